@@ -133,6 +133,15 @@ class Attributes(InFolder):
                 kinds.update((one["domain"], one["kind"]) for one in told["sets"])
         self.assertEqual(len(kinds), 11)  # all that there are
 
+    def test_clips_end_with_the_stream(self):
+        streams = sorted((SUITE / "accept" / "CLP").glob("*.rlpc"))
+        for stream, told in zip(streams, self.in_node(streams)):
+            info = json.loads(run("rlpcinfo", stream, "--json").stdout)
+            clips = [(c["name"], c["first_frame"], c["num_frames"]) for c in info["clips"]
+                     if c["first_frame"] < info["num_frames"]]
+            found = [(c["name"], c["firstFrame"], c["frames"]) for c in told["clips"]]
+            self.assertEqual((found, told["numFrames"]), (clips, info["num_frames"]), stream)
+
     def test_damaged_attributes_and_assets(self):
         streams = sorted(stream for area in ("ATT", "AST")
                          for stream in (SUITE / "either" / area).glob("*.rlpc"))

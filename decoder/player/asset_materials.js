@@ -74,7 +74,8 @@ export async function readMaterials(bytes) {
     }
     return pictures.get(number);
   };
-  const textureOf = async ({ index, texCoord, extensions } = {}) => {
+  const textureOf = async (info) => {
+    const { index, texCoord, extensions } = info ?? {};
     const transform = extensions?.KHR_texture_transform;
     const { source, sampler, extensions: others } = textures[index] ?? {};
     const image = source ?? others?.EXT_texture_webp?.source;
@@ -85,9 +86,10 @@ export async function readMaterials(bytes) {
       rows: rowsOf(transform),
     };
   };
-  const read = async ({ pbrMetallicRoughness: { baseColorFactor, baseColorTexture } = {},
-    normalTexture, emissiveFactor, emissiveTexture, alphaMode, alphaCutoff, doubleSided = false,
-    extensions }) => {
+  const read = async (material) => {
+    const { pbrMetallicRoughness, normalTexture, emissiveFactor, emissiveTexture, alphaMode,
+      alphaCutoff, doubleSided = false, extensions } = material ?? {};
+    const { baseColorFactor, baseColorTexture } = pbrMetallicRoughness ?? {};
     const [strength] = numbers([extensions?.KHR_materials_emissive_strength?.emissiveStrength], 1,
       [1]);
     return {

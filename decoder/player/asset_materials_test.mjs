@@ -100,7 +100,17 @@ test("WhatIsNoGlbIsAnError", async () => {
     glb([1, 2]).slice(0, 22)]) {
     await assert.rejects(readMaterials(bytes), Error);
   }
-  for (const json of [{ materials: 5 }, { materials: [null] }, { materials: [7], textures: {} }]) {
-    await readMaterials(glb(json)).catch((error) => assert.ok(error instanceof Error));
+  await assert.rejects(readMaterials(glb({ materials: 5 })), Error);
+});
+
+test("WhatDoesNotFitIsLeftOut", async () => {
+  for (const material of [null, 7, { normalTexture: null, pbrMetallicRoughness: null },
+    { emissiveTexture: 5, extensions: null }]) {
+    const { materials, problems } = await readMaterials(glb({ ...kTextured,
+      materials: [material, kTextured.materials[0]] }));
+    assert.deepEqual([materials[0].base, materials[0].emission], [[1, 1, 1, 1], [0, 0, 0]]);
+    assert.equal(materials[0].textures.normal.picture, undefined);
+    assert.ok(materials[1].textures.base.picture);
+    assert.deepEqual(problems, []);
   }
 });

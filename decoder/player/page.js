@@ -91,10 +91,11 @@ class Player {
 
   /** Until the frame of the whole mesh is there. */
   async showCoarse(index) {
-    const coarse = await this.session.coarseFrame(index);
-    if (!coarse || !this.session) return;
+    const { session } = this;
+    const coarse = await session.coarseFrame(index);
+    if (!coarse || this.session !== session) return; // another stream has taken its place
     this.viewer.setMesh(coarse.info.vertices, coarse.indices);
-    this.viewer.showFrame({ ...coarse.frame, box: Object.values(this.session.boxOf(coarse.frame)).flat() });
+    this.viewer.showFrame({ ...coarse.frame, box: Object.values(session.boxOf(coarse.frame)).flat() });
     this.coarseVertices = coarse.info.vertices;
     this.say("");
   }
@@ -318,13 +319,22 @@ class Player {
   }
 }
 
+/** Names may have a % that stands for nothing else. */
+function decoded(name) {
+  try {
+    return decodeURIComponent(name);
+  } catch {
+    return name;
+  }
+}
+
 function start() {
   const player = new Player();
   const embedded = embeddedStream();
   if (embedded) {
     player.open(embedded.name, embedded.stream, embedded.reference);
   } else if (source) {
-    const name = decodeURIComponent(new URL(source, location.href).pathname.split("/").at(-1));
+    const name = decoded(new URL(source, location.href).pathname.split("/").at(-1));
     player.open(name || source, source, wanted.get("reference") ?? undefined);
   } else {
     document.body.dataset.state = "empty";
@@ -332,9 +342,9 @@ function start() {
   }
   let before = performance.now();
   const loop = (now) => {
+    requestAnimationFrame(loop);
     player.tick(Math.min(Math.max(now - before, 0), 250) / 1000);
     before = now;
-    requestAnimationFrame(loop);
   };
   requestAnimationFrame(loop);
   return player;

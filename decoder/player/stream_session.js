@@ -34,7 +34,14 @@ export class StreamSession {
   async openReference(stream) {
     this.hasReference = true;
     try {
-      this.reference = await RlpcDecoder.open(stream, this.options);
+      const reference = await RlpcDecoder.open(stream, this.options);
+      const { vertices, triangles } = this.decoder.info;
+      if (reference.info.vertices !== vertices || reference.info.triangles !== triangles) {
+        reference.close();
+        throw new Error(`it has ${reference.info.vertices} vertices and ` +
+          `${reference.info.triangles} triangles, not ${vertices} and ${triangles}`);
+      }
+      this.reference = reference;
     } catch (error) {
       this.referenceError = error;
     }
@@ -48,9 +55,12 @@ export class StreamSession {
     try {
       const coarse = await RlpcDecoder.open(this.decoder,
         { ...this.options, coarseLayers: Math.ceil(layers / 2) });
-      const frame = await coarse.frame(index, { coordinates: true, normals: true });
-      coarse.close();
-      return { info: coarse.info, indices: coarse.indices, frame };
+      try {
+        const frame = await coarse.frame(index, { coordinates: true, normals: true });
+        return { info: coarse.info, indices: coarse.indices, frame };
+      } finally {
+        coarse.close();
+      }
     } catch {
       return undefined; // the whole mesh has it, too, and it is said there
     }

@@ -17,8 +17,19 @@ function workerFrom(worker) {
   return worker ?? typeof Worker === "function" ? packageWorker : undefined;
 }
 
+/** Null if there is none; undefined if it is not JSON, which decoders do not check. */
 function parsedMetadata(text) {
-  return text === "" ? null : JSON.parse(text);
+  try {
+    return text === "" ? null : JSON.parse(text);
+  } catch {
+    return undefined;
+  }
+}
+
+/** Clips with the frames that the stream has; those of streams of unknown length may claim more. */
+function withinStream(clips, frames) {
+  return clips.map((clip) => ({ ...clip, frames: Math.min(clip.frames, frames - clip.firstFrame) }))
+    .filter((clip) => clip.frames > 0);
 }
 
 function byName(sets) {
@@ -62,6 +73,7 @@ export class RlpcDecoder {
 
   #describe({ header, size, indices, coarseVertices }) {
     const rate = header.frame_rate_numerator / header.frame_rate_denominator;
+    const metadata = parsedMetadata(header.metadata);
     this.info = Object.freeze({
       vertices: header.num_vertices,
       triangles: header.num_triangles,
@@ -75,14 +87,14 @@ export class RlpcDecoder {
       bytes: size,
       hasAttributes: Boolean(header.has_attributes),
       hasAsset: Boolean(header.has_asset),
-      damagedUnits: header.num_damaged_units,
+      damagedUnits: header.num_damaged_units + (metadata === undefined ? 1 : 0),
     });
     this.gridOrigin = header.grid_origin;
     this.gridStep = 2 ** header.grid_log2_step;
     this.indices = indices;
     this.coarseVertices = coarseVertices;
-    this.clips = header.clips;
-    this.metadata = parsedMetadata(header.metadata);
+    this.clips = withinStream(header.clips, header.num_frames);
+    this.metadata = metadata ?? null;
     const half = 2 ** (header.position_bits - 1);
     this.bounds = this.#box([-half, -half, -half, half - 1, half - 1, half - 1]);
   }
@@ -130,6 +142,9 @@ export class RlpcDecoder {
   }
 
   async *frames({ first = 0, last = this.info.frames - 1, ahead = 4, signal, ...options } = {}) {
+    if (options.into || options.replace) {
+      throw new TypeError("frames() decodes ahead: `into` and `replace` are for frame()");
+    }
     const stop = new AbortController();
     const either = signal ? AbortSignal.any([signal, stop.signal]) : stop.signal;
     const waiting = [];

@@ -15,6 +15,7 @@ export class HttpSource {
     this.loaded = 0; // bytes from the server
     this.size = undefined;
     this.whole = undefined; // the promise of a stream that is loaded from its start to its end
+    this.waiting = []; // for more of it
   }
 
   async open(signal) {
@@ -24,6 +25,7 @@ export class HttpSource {
       const total = /\/(\d+)$/.exec(response.headers.get("content-range") ?? "")?.[1];
       this.size = total === undefined ? await this.askForSize(signal) : Number(total);
       if (this.size !== undefined) return this.receive(response, 0, Math.min(kFirstBytes, this.size));
+      await response.body?.cancel();
       return this.openWhole(await this.request(undefined, signal));
     }
     if (response.status === 416) { // no byte is there
@@ -33,9 +35,12 @@ export class HttpSource {
     return this.openWhole(response);
   }
 
-  /** Servers of other origins may hide Content-Range. */
+  /** Servers of other origins may hide Content-Range; some have no HEAD. Undefined: unknown. */
   async askForSize(signal) {
-    const response = await this.request(undefined, signal, "HEAD");
+    const response = await this.request(undefined, signal, "HEAD").catch((error) => {
+      if (error.name === "AbortError") throw error;
+    });
+    if (!response) return undefined;
     const length = response.headers.get("content-length");
     return length === null || response.headers.has("content-encoding") ? undefined : Number(length);
   }
@@ -83,15 +88,16 @@ export class HttpSource {
   /** Loads all of it from a response; returns once the size is known. */
   async openWhole(response) {
     this.ranges.maxBytes = Infinity;
-    this.whole = this.readWhole(response);
-    this.whole.catch(() => {}); // load() reports it
     // A length is that of the bytes here only if nothing was compressed on the way, which
     // servers of other origins do not tell.
     const length = response.headers.get("content-length");
     const isSure = response.type !== "cors" && !response.headers.has("content-encoding");
     if (length !== null && isSure) this.size = Number(length);
-    else await this.whole;
-    this.checkSize(this.size);
+    if (this.size > this.maxBytes) await response.body.cancel();
+    this.checkSize(this.size ?? 0);
+    this.whole = this.readWhole(response);
+    this.whole.catch(() => {}); // load() reports it
+    if (this.size === undefined) await this.whole;
   }
 
   async readWhole(response) {
@@ -111,7 +117,7 @@ export class HttpSource {
       this.checkSize(start + value.length);
       this.keep(start, value);
       start += value.length;
-      this.arrived?.();
+      this.waiting.splice(0).forEach((resolve) => resolve());
     }
   }
 
@@ -138,7 +144,7 @@ export class HttpSource {
 
   /** More bytes of the whole stream. */
   more(signal) {
-    const arrival = new Promise((resolve) => (this.arrived = resolve));
+    const arrival = new Promise((resolve) => this.waiting.push(resolve));
     return until(Promise.race([this.whole, arrival]), signal);
   }
 

@@ -159,7 +159,7 @@ export interface Frame {
   error?: RlpcError;
 }
 
-export interface FramesOptions extends FrameOptions {
+export interface FramesOptions extends Omit<FrameOptions, "into" | "replace"> {
   first?: number;
   /** The last frame; usually that of the sequence. */
   last?: number;

@@ -43,7 +43,13 @@ export class Link {
       signal?.addEventListener("abort", stop, { once: true });
       this.requests.set(id, {
         resolve, reject, done: () => signal?.removeEventListener("abort", stop) });
-      this.send({ id, ...message }, transfer);
+      try {
+        this.send({ id, ...message }, transfer);
+      } catch (error) { // an array that has been handed over before
+        this.requests.delete(id);
+        signal?.removeEventListener("abort", stop);
+        reject(error);
+      }
     });
   }
 

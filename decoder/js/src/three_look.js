@@ -43,6 +43,7 @@ export async function loadLook(decoder,
 /** The asset, as three's GLTFLoader reads it; undefined if it cannot. */
 async function loadMaterials(decoder, textures, gltfLoader) {
   const asset = await decoder.asset();
+  if (!asset) return undefined; // one of another format than GLB
   let loader = gltfLoader;
   if (!loader) {
     try {

@@ -58,7 +58,9 @@ async function told(path) {
   const decoder = await RlpcDecoder.open(readFileSync(path));
   const result = { path, sets: [] };
   const { hasAttributes, hasAsset } = decoder.info;
-  Object.assign(result, { hasAttributes, hasAsset });
+  Object.assign(result, { hasAttributes, hasAsset, clips: decoder.clips,
+    numFrames: decoder.info.frames });
+  await assert.rejects(decoder.frames({ into: {} }).next(), TypeError);
   try {
     const sets = await decoder.attributes();
     assert.equal(await decoder.attributes(), sets);
