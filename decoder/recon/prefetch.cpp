@@ -207,7 +207,8 @@ const ParsedModel* Prefetch::parse(ModelAhead& model) const {
     const auto before = parse(model.before);
     model.before = {};
     if (before) {
-      auto parsed = stream_.access_units().parse_model(model.coded, *before, max_memory_bytes_);
+      auto parsed =
+          stream_.access_units().parse_model(model.coded, *before, cut_, max_memory_bytes_);
       if (parsed) model.parsed = std::move(*parsed);
     }
     model.coded = {};
@@ -230,7 +231,8 @@ std::optional<ModelSlots> Prefetch::parse(const Slots& slots) const {
 std::optional<PreparedGof> Prefetch::parse(const Ahead& ahead) const {
   const auto models = parse(ahead.models);
   if (!models) return std::nullopt;
-  auto access_unit = stream_.access_units().parse(ahead.coded, *models, max_memory_bytes_);
+  auto access_unit =
+      stream_.access_units().parse(ahead.coded, *models, cut_, max_memory_bytes_);
   if (!access_unit) return std::nullopt;
   return prepare(std::move(*access_unit), stream_.context(), models_, max_frame_bytes_);
 }

@@ -34,6 +34,7 @@ class Prefetch {
       : stream_(stream),
         models_(models),
         threads_(threads),
+        cut_(stream.access_units().cut()),
         max_memory_bytes_(max_memory_bytes),
         max_frame_bytes_(max_frame_bytes),
         most_asked_(most_asked) {}
@@ -98,6 +99,7 @@ class Prefetch {
   StreamReader& stream_;
   ModelRecons& models_;
   ThreadPool& threads_;
+  const SliceCut cut_;  // of its own: the stream's may change while threads parse
   std::uint64_t max_memory_bytes_;
   std::uint64_t max_frame_bytes_;
   std::size_t most_asked_;

@@ -65,11 +65,11 @@ std::optional<CodedAccessUnit> AccessUnitReader::collect(const UnitHeader& gof_u
 }
 
 Result<AccessUnit> AccessUnitReader::parse(const CodedAccessUnit& coded,
-                                           const ModelSlots& models,
+                                           const ModelSlots& models, const SliceCut& cut,
                                            std::uint64_t max_memory_bytes) const {
   const MemoryLimit memory = limit_ahead(max_memory_bytes);
   const std::uint64_t of_models = memory_of_models(models);
-  AccessUnitParser parser(context_, memory, cut_);
+  AccessUnitParser parser(context_, memory, cut);
   for (const auto& [unit, payload] : coded.units) {
     const std::uint64_t taken_bytes = std::max(of_models, parser.memory_bytes());
     if (auto ok = check_fits(unit, taken_bytes, memory); !ok) return ok.error();
@@ -154,11 +154,11 @@ std::optional<Vector<CodedUnit>> AccessUnitReader::collect_model(
 }
 
 Result<ParsedModel> AccessUnitReader::parse_model(const Vector<CodedUnit>& coded,
-                                                  const ModelSlots& models,
+                                                  const ModelSlots& models, const SliceCut& cut,
                                                   std::uint64_t max_memory_bytes) const {
   const MemoryLimit memory = limit_ahead(max_memory_bytes);
   const std::uint64_t of_models = memory_of_models(models);
-  ModelParser parser(context_, memory, cut_);
+  ModelParser parser(context_, memory, cut);
   for (const auto& [unit, payload] : coded) {
     const std::uint64_t taken_bytes = std::max(of_models, parser.memory_bytes());
     if (auto ok = check_fits(unit, taken_bytes, memory); !ok) return ok.error();

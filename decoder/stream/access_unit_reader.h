@@ -53,6 +53,7 @@ class AccessUnitReader {
     return {memory_.max_bytes, memory_.bytes_in_use + cached_bytes_};
   }
   const SliceCut& cut() const { return cut_; }
+  // Of what read() and read_model() give from now on.
   void set_cut(const SliceCut& cut) { cut_ = cut; }
   // Sets the memory that the rest of the decoder uses from now on.
   void set_bytes_in_use(std::uint64_t bytes) { memory_.bytes_in_use = bytes; }
@@ -72,13 +73,14 @@ class AccessUnitReader {
   // payloads and, separately, the parsed result. If a step fails, read() reports the error.
   std::optional<CodedAccessUnit> collect(const UnitHeader& gof_unit, std::uint32_t first_frame,
                                          std::uint64_t max_memory_bytes);
+  // cut: one that no set_cut() changes.
   Result<AccessUnit> parse(const CodedAccessUnit& coded, const ModelSlots& models,
-                           std::uint64_t max_memory_bytes) const;
+                           const SliceCut& cut, std::uint64_t max_memory_bytes) const;
   // The same for a skinned model.
   std::optional<Vector<CodedUnit>> collect_model(const UnitHeader& model_unit,
                                                  std::uint64_t max_memory_bytes);
   Result<ParsedModel> parse_model(const Vector<CodedUnit>& coded, const ModelSlots& models,
-                                  std::uint64_t max_memory_bytes) const;
+                                  const SliceCut& cut, std::uint64_t max_memory_bytes) const;
 
  private:
   Result<bool> parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
