@@ -32,13 +32,16 @@ std::optional<OutputError> failure_of(const GlbDocument& document, const std::st
   return std::nullopt;
 }
 
+std::string glb_text(const GltfJson& root) {
+  return root.dump(-1, ' ', false, GltfJson::error_handler_t::replace);
+}
+
 std::optional<OutputError> write_glb(GlbDocument& document, OutputFile& file) {
   BinaryChunk& chunk = document.buffers.chunk();
   document.root["accessors"] = document.buffers.accessors();
   document.root["bufferViews"] = document.buffers.views();
   document.root["buffers"] = GltfJson::array({{{"byteLength", chunk.size()}}});
-  std::string json =
-      document.root.dump(-1, ' ', false, GltfJson::error_handler_t::replace);  // names
+  std::string json = glb_text(document.root);
   json.resize((json.size() + 3) / 4 * 4, ' ');
   const std::uint64_t size = 12 + 8 + json.size() + 8 + chunk.size();
   if (size > kMaxGltfBytes) return too_large_for_glb(file.path());

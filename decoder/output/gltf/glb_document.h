@@ -21,6 +21,9 @@ struct GlbDocument {
   GlbBuffers buffers;
 };
 
+// The JSON; bytes of names that are no UTF-8 are replaced.
+std::string glb_text(const GltfJson& root);
+
 OutputError too_large_for_glb(const std::string& path);
 
 // Why the document cannot be written, as far as it has been made; none: nothing speaks against

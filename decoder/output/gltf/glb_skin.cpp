@@ -199,7 +199,7 @@ double bytes_without_targets(const GltfLook& look, const JointMotion& motion,
     root["animations"].push_back(animation_of(spans[i], frame_rate, motion.clips[i],
                                               SkinTargets{}, TargetTrack{}, document.buffers));
   }
-  return static_cast<double>(document.buffers.chunk().size() + root.dump().size());
+  return static_cast<double>(document.buffers.chunk().size() + glb_text(root).size());
 }
 
 }  // namespace

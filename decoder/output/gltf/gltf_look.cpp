@@ -8,24 +8,13 @@
 namespace rlpc {
 namespace {
 
-// Of a set that vertices have; empty: none.
-std::string semantic_of(const AttributeHeader& header) {
-  const std::string& name = header.name;
-  const auto number_after = [&](const char* word) -> std::optional<std::string> {
-    const std::string prefix = word;
-    if (!name.starts_with(prefix) || name.size() == prefix.size()) return std::nullopt;
-    const std::string digits = name.substr(prefix.size());
-    const bool is_number =
-        std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
-    return is_number ? std::optional(digits) : std::nullopt;
-  };
-  if (const auto n = number_after("uv"); n && header.num_components == 2) {
-    return "TEXCOORD_" + *n;
+// Of a name that is the word and a number as Table F-1 writes it.
+std::optional<std::uint32_t> number_after(const std::string& word, const std::string& name) {
+  constexpr std::uint32_t kMost = 255;  // sets are numbered from 0 on without gaps
+  for (std::uint32_t n = 0; n <= kMost; ++n) {
+    if (name == word + std::to_string(n)) return n;
   }
-  if (const auto n = number_after("colour"); n && header.num_components >= 3) {
-    return "COLOR_" + *n;
-  }
-  return "";
+  return std::nullopt;
 }
 
 }  // namespace
@@ -34,21 +23,20 @@ GltfLook::GltfLook(const std::vector<AttributeSet>& sets, std::span<const Triang
                    std::uint32_t num_vertices, const std::string& asset)
     : asset_(asset) {
   Vector<const AttributeSet*> split;
-  std::vector<std::string> semantics;
   for (const AttributeSet& set : sets) {
     if (!is_drawable(set.header, triangles)) continue;
     const bool is_normal = is_normal_set(set.header) && !triangles.empty();
-    const std::string semantic = is_normal ? "NORMAL" : semantic_of(set.header);
-    if (semantic.empty()) continue;
-    split.push_back(&set);
-    semantics.push_back(semantic);
+    const std::uint32_t width = number_components(set.header);
+    const auto uv = width == 2 ? number_after("uv", set.header.name) : std::nullopt;
+    const auto colour = width >= 3 ? number_after("colour", set.header.name) : std::nullopt;
+    if (uv) uvs_[*uv].set = split.size();
+    if (colour) colours_[*colour] = {split.size(), width, {}};
+    if (is_normal || uv || colour) split.push_back(&set);
   }
   drawn_ = std::make_unique<DrawnMesh>(std::move(split), triangles, num_vertices);
   mesh_.vertex = drawn_->vertices().stream_vertex;
-  for (std::size_t s = 0; s < semantics.size(); ++s) {
-    if (semantics[s] == "NORMAL") continue;
-    const std::uint32_t width = number_components(drawn_->sets()[s]->header);
-    values_.push_back({semantics[s], width, drawn_->numbers(s)});
+  for (auto* const list : {&uvs_, &colours_}) {
+    for (auto& [number, values] : *list) values.numbers = drawn_->numbers(values.set);
   }
   make_parts(sets, drawn_->vertices().triangles);
 }
@@ -83,10 +71,17 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
 }
 
 void GltfLook::add_values(GltfJson& attributes, GlbBuffers& buffers) const {
-  for (const Values& values : values_) {
-    attributes[values.semantic] = values.semantic.starts_with("TEXCOORD")
-                                      ? buffers.add_texture_coordinates(values.numbers)
-                                      : buffers.add_vertex_values(values.numbers, values.width);
+  std::uint32_t next = 0;
+  for (const auto& [number, values] : uvs_) {
+    const std::uint32_t accessor = buffers.add_texture_coordinates(values.numbers);
+    // Materials name sets by number, which must not have gaps.
+    for (; next <= number; ++next) attributes["TEXCOORD_" + std::to_string(next)] = accessor;
+  }
+  next = 0;
+  for (const auto& [number, values] : colours_) {
+    if (number != next) break;  // COLOR_0 would colour the surface
+    attributes["COLOR_" + std::to_string(next++)] =
+        buffers.add_vertex_values(values.numbers, values.width);
   }
 }
 

@@ -1,6 +1,7 @@
 // What a glTF mesh looks like: values of its vertices, normals, materials and textures.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -36,7 +37,7 @@ class GltfLook {
 
  private:
   struct Values {
-    std::string semantic;        // TEXCOORD_0
+    std::size_t set = 0;         // of those drawn
     std::uint32_t width = 2;     // components
     std::vector<float> numbers;  // of output vertices
   };
@@ -47,7 +48,8 @@ class GltfLook {
   StreamAsset asset_;
   std::unique_ptr<DrawnMesh> drawn_;
   GlbMesh mesh_;
-  std::vector<Values> values_;
+  std::map<std::uint32_t, Values> uvs_;  // by their numbers
+  std::map<std::uint32_t, Values> colours_;
 };
 
 }  // namespace rlpc

@@ -70,5 +70,44 @@ TEST(GltfLook, HasTheDefaultMaterialOfGltfWhereTheAssetSaysSo) {
   EXPECT_EQ(written.primitives[0]["material"], 0);
 }
 
+// Of four vertices, each with the next values from 0 on.
+AttributeSet vertices(const char* name, std::uint32_t components,
+                      ValueKind kind = ValueKind::kIntegers) {
+  AttributeSet set;
+  set.header.name = name;
+  set.header.domain = AttributeDomain::kVertex;
+  set.header.kind = kind;
+  set.header.num_components = components;
+  set.header.value_bits = 8;
+  for (std::uint32_t i = 0; i < 4 * components; ++i) set.values.push_back(i);
+  return set;
+}
+
+GltfJson attributes_of(const std::vector<AttributeSet>& sets) {
+  const GltfLook look(sets, kTriangles, 4, "");
+  GlbBuffers buffers;
+  GltfJson attributes = GltfJson::object();
+  look.add_values(attributes, buffers);
+  return attributes;
+}
+
+TEST(GltfLook, NumbersSetsWithoutGaps) {
+  GltfJson attributes = attributes_of({vertices("uv2", 2), vertices("uv0", 2)});
+  EXPECT_EQ(attributes.size(), 3U);
+  EXPECT_NE(attributes["TEXCOORD_0"], attributes["TEXCOORD_1"]);
+  EXPECT_EQ(attributes["TEXCOORD_1"], attributes["TEXCOORD_2"]);
+  attributes = attributes_of({vertices("colour0", 3), vertices("colour2", 4)});
+  EXPECT_EQ(attributes.size(), 1U);
+  EXPECT_TRUE(attributes.contains("COLOR_0"));
+}
+
+TEST(GltfLook, LeavesOutSetsOfOtherNamesAndWidths) {
+  EXPECT_TRUE(attributes_of({vertices("uv00", 2), vertices("uv", 2), vertices("uv0", 3),
+                             vertices("uv4000000000", 2), vertices("uv1x", 2),
+                             vertices("uv1", 2, ValueKind::kUnitVectors),
+                             vertices("colour1", 3), vertices("colour0", 2)})
+                  .empty());
+}
+
 }  // namespace
 }  // namespace rlpc
