@@ -104,7 +104,7 @@ class AssetMaker {
     if (!describes && materials.names.size() < 2 && materials.part_names.size() < 2) return {};
     for (const std::string& name : materials.names) {
       const auto found = described.find(name);
-      Json material = found == described.end() ? Json::object() : json_of(found->second);
+      Json material = json_of(found == described.end() ? Mtl() : found->second);
       material["name"] = name;
       asset_.root["materials"].push_back(std::move(material));
     }

@@ -60,7 +60,9 @@ TEST_F(MaterialAssetTest, MaterialsComeInTheOrderOfTheirNumbers) {
   EXPECT_EQ(glass["alphaMode"], "BLEND");
   EXPECT_EQ(glass["pbrMetallicRoughness"]["baseColorFactor"], Json({0.5, 0.5, 0.5, 0.25}));
   EXPECT_EQ(glass["pbrMetallicRoughness"]["roughnessFactor"], 0.1);
-  EXPECT_EQ(root["materials"][1], Json({{"name", "unknown"}}));
+  EXPECT_EQ(root["materials"][1], Json({{"doubleSided", true},
+                                        {"name", "unknown"},
+                                        {"pbrMetallicRoughness", {{"metallicFactor", 0.0}}}}));
   const Json& red = root["materials"][2];
   EXPECT_EQ(red["pbrMetallicRoughness"]["baseColorFactor"], Json({0.8, 0.1, 0.8, 1.0}));
   EXPECT_EQ(red["pbrMetallicRoughness"]["metallicFactor"], 1.0);

@@ -62,6 +62,7 @@ class AssetMaker {
     GltfAsset asset;
     if (!out_.empty()) asset.glb = glb();
     asset.notes = std::move(notes_);
+    asset.files = std::move(files_);
     return asset;
   }
 

@@ -18,6 +18,7 @@ struct GltfAsset {
   // is nothing to keep.
   std::string glb;
   std::vector<std::string> notes;  // about what could not be read
+  std::vector<std::string> files;  // of images
 };
 
 // root: the document, valid. Images come into the binary chunk, wherever they were; without

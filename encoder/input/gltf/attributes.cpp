@@ -71,7 +71,8 @@ class AttributeCollector {
           set.max_value == 0xFFFFFFFF || set.max_value == a->max_value ? a->max_value : 0;
     }
     if (!is_everywhere && is_normal) {
-      notes_.emplace_back("dropped normals, which some primitives do not have");
+      notes_.emplace_back(
+          "dropped all normals, as some primitives have none: every face is flat");
       return std::nullopt;
     }
     if (set.max_value != 0) set.kind = SourceAttribute::Kind::kIntegers;

@@ -113,6 +113,11 @@ TEST_F(GltfErrorsTest, WrongJsonTypes) {
   expect_broken(good, set("/animations/0/channels/0/target/path", "colour"),
                 "channels[0].target.path: found \"colour\"");
   expect_broken(good, set("/animations/0/channels/0/target/node", 9), "target.node: found 9");
+  for (const std::string list : {"images", "textures", "samplers"}) {
+    for (const Json& value : {Json(5), Json::object(), Json("a")}) {
+      expect_broken(good, set(("/" + list).c_str(), value), list + ": found ");
+    }
+  }
 }
 
 TEST_F(GltfErrorsTest, RangesOutsideTheirBuffers) {

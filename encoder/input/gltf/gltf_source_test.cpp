@@ -103,6 +103,20 @@ TEST_F(GltfSourceTest, FlipsTrianglesOfMirroringNodes) {
   EXPECT_EQ(open(builder)->triangles(), (std::vector<Triangle>{{0, 1, 2}, {3, 5, 4}}));
 }
 
+TEST_F(GltfSourceTest, FlipsTrianglesOfMirroringNodesWithSkins) {
+  GltfBuilder builder = one_triangle();
+  Json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["JOINTS_0"] = builder.add("VEC4", std::vector<std::uint8_t>(12, 0));
+  attributes["WEIGHTS_0"] =
+      builder.add("VEC4", std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  builder.add_root({{"scale", {1, -1, 1}}});
+  builder.push("skins", {{"joints", {1}}});
+  builder.json["nodes"][0]["skin"] = 0;
+  EXPECT_EQ(open(builder)->triangles(), (std::vector<Triangle>{{0, 1, 2}}));
+  builder.json["nodes"][0]["scale"] = {1, -1, 1};  // which moves nothing
+  EXPECT_EQ(open(builder)->triangles(), (std::vector<Triangle>{{0, 2, 1}}));
+}
+
 TEST_F(GltfSourceTest, AppliesMatricesOfNodes) {
   GltfBuilder builder = one_triangle();
   builder.json["nodes"][0]["matrix"] = {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 5, 6, 7, 1};

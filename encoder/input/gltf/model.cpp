@@ -189,6 +189,7 @@ InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLi
   if (errors) return errors.first();
   model.asset = std::move(asset.glb);
   model.notes.insert(model.notes.end(), asset.notes.begin(), asset.notes.end());
+  model.files.insert(model.files.end(), asset.files.begin(), asset.files.end());
   file->json.reset();
   memory.give_back(file->document_bytes);
   model.memory_bytes = memory.taken() + file->file.memory_bytes();

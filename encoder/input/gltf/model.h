@@ -56,7 +56,7 @@ struct GltfModel {
   std::uint64_t memory_bytes = 0;  // of the model and of the source made from it, estimated
 };
 
-// animation, textures and max_memory_bytes of the options are used.
+// animations, textures and max_memory_bytes of the options are used.
 InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLimits& limits);
 
 }  // namespace rlpc

@@ -42,11 +42,12 @@ InputResult<std::vector<std::uint32_t>> first_frames(const GltfModel& model,
   return first;
 }
 
-// Mirroring nodes flip triangles, so that they keep facing the same side (glTF 2.0, 3.7.2.1).
+// Mirroring nodes flip triangles, so that they keep facing the same side (glTF 2.0, 3.7.2.1);
+// those of skinned meshes, too, although joints alone place their vertices.
 std::vector<bool> mirrored_instances(const GltfModel& model, const GltfPose& pose) {
   std::vector<bool> is_mirrored;
   for (const GltfModel::Instance& instance : model.instances) {
-    is_mirrored.push_back(!instance.skin && determinant(pose.to_scene[instance.node]) < 0);
+    is_mirrored.push_back(determinant(pose.to_scene[instance.node]) < 0);
   }
   return is_mirrored;
 }

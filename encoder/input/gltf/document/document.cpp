@@ -270,6 +270,9 @@ GltfDocument read_gltf_document(const GltfValue& root, GltfErrors& errors) {
   document.dropped = dropped(root);
   const Counts counts(root);
   document.num_materials = counts.materials;
+  for (const char* const list : {"images", "textures", "samplers"}) {
+    (void)root[list].size();  // an error unless it is a list
+  }
   document.buffers = read_all(root["buffers"], [](const GltfValue& value) {
     GltfBuffer buffer;
     buffer.size = value["byteLength"].integer({1, GltfValue::kMaxInteger});
