@@ -323,6 +323,13 @@ TEST(AttributesRoundtrip, TextureCoordinatesAndNormalsComeNear) {
     settings.normals = NormalChoice::kExact;
     settings.normal_bits = 12;
     const Coded coded = code(draw, mesh, source, settings);
+    if (is_normal) {
+      settings = {};
+      settings.exact = true;
+      const AttributeHeader header = code(draw, mesh, source, settings).decoded.header;
+      ASSERT_EQ(header.kind, ValueKind::kUnitVectors) << "seed " << seed;
+      ASSERT_EQ(header.value_bits, 16U);
+    }
     const std::uint32_t n = in.num_components;
     const bool is_smoothing = coded.decoded.header.kind == ValueKind::kSmoothing;
     std::map<std::size_t, std::size_t> source_of;  // of each sector

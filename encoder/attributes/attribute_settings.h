@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "encoder/input/source_attribute.h"
+
 namespace rlpc {
 
 // Smoothing has normals computed from the positions of each frame (F.8); exact ones are those
@@ -12,13 +14,13 @@ enum class NormalChoice : std::uint8_t { kAuto, kSmoothing, kExact };
 
 struct AttributeSettings {
   bool dropped = false;  // no attribute unit
-  bool exact = false;    // numbers as 32-bit floats, whatever the bits below
+  // Numbers as 32-bit floats, normals in 16 bits a coordinate, and not as smoothing unless that
+  // is chosen; whatever the bits below.
+  bool exact = false;
   // Bits of a texture coordinate after the point: 12 are 1/4096 of an image. Where coordinates
   // repeat an image of a known size, at least so many over their range.
-  int uv_bits = 12;  // 1 to 16
-  // [number of a set of texture coordinates]: texels of the images that it addresses, along
-  // their longer side; 0, infinity or absent: not known.
-  std::vector<double> texels_of_uv;
+  int uv_bits = 12;            // 1 to 16
+  std::vector<UvUse> uv_uses;  // [number of a set of texture coordinates]; absent: as {}
   // Of a coordinate of a unit vector, 2 to 16. At 8, q-spider's normals take 3.8 kB and are off
   // by 0.33 degrees RMS, 0.6 at most; at 7, 2.9 kB and twice that; at 10, 6.2 kB and a quarter.
   int normal_bits = 8;

@@ -376,9 +376,9 @@ CodedAttributeSet AttributeEncoder::code_normals(Draft draft, AttributeReport& r
   measure_normals(
       draft, of_first.empty() ? normals : of_first,
       [&](std::uint32_t x) { return compared.normal(x); }, report);
-  report.is_smoothing =
-      settings_.normals == NormalChoice::kSmoothing ||
-      (settings_.normals == NormalChoice::kAuto && report.rms_error <= kSmoothingServes);
+  report.is_smoothing = settings_.normals == NormalChoice::kSmoothing ||
+                        (settings_.normals == NormalChoice::kAuto && !settings_.exact &&
+                         report.rms_error <= kSmoothingServes);
   CodedAttributeSet set{
       .header = draft.quantised.header, .seams = {}, .diagonal_flags = {}, .residuals = {}};
   set.seams = draft.seams;

@@ -101,21 +101,26 @@ int log2_step_of_range(const SourceAttribute& source, int bits) {
   return log2_step;
 }
 
-// Coordinates that repeat an image n times have about 1/n of its size on the surface: so many
-// bits over their range serve as well as over the image where it appears once, up to the eighth
-// of a texel that its edges can move within the image. morph-stress, which repeats an image of
-// 64 texels 10 times, takes 1.1 kB less of its 3.9 kB of attributes; half or twice of that part
-// of a texel changes nothing there, nor in the other models, which repeat no image.
+// The bits are those of an image, also where a transform has it several times along the unit of
+// the coordinates. Coordinates that repeat an image n times have about 1/n of its size on the
+// surface: so many bits over their range serve as well as over the image where it appears once,
+// up to the eighth of a texel that its edges can move within the image. morph-stress, which
+// repeats an image of 64 texels 10 times, takes 1.1 kB less of its 3.9 kB of attributes; half
+// or twice of that part of a texel changes nothing there, nor in the other models, which repeat
+// no image.
 int log2_step_of_uv(const SourceAttribute& source, const AttributeSettings& settings) {
   constexpr double kStep = 0.25;  // fixed: of a texel; 12 bits are that for images of 1024
-  double texels = 0.0;
-  for (std::size_t set = 0; set < settings.texels_of_uv.size(); ++set) {
-    if (source.name == "uv" + std::to_string(set)) texels = settings.texels_of_uv[set];
+  constexpr double kMostScale = 1 << 10;  // fixed: beyond, textures are noise
+  UvUse use;
+  for (std::size_t set = 0; set < settings.uv_uses.size(); ++set) {
+    if (source.name == "uv" + std::to_string(set)) use = settings.uv_uses[set];
   }
+  const double scale = std::min(use.scale, kMostScale);
   int log2_step = -settings.uv_bits;
-  if (!(texels > 0.0)) return log2_step;
+  while (exact_exp2(log2_step) * scale > exact_exp2(-settings.uv_bits)) --log2_step;
+  if (!(use.texels > 0.0)) return log2_step;
   const double coarsest =
-      std::min(kStep / texels, exact_exp2(log2_step) * widest_range(source));
+      std::min(kStep / use.texels, exact_exp2(log2_step) * scale * widest_range(source));
   while (exact_exp2(log2_step + 1) <= coarsest) ++log2_step;
   return log2_step;
 }
@@ -195,8 +200,9 @@ QuantisedAttribute quantise_attribute(const SourceAttribute& source,
   out.header.name = source.name;
   out.header.domain = source.domain;
   out.header.num_components = source.num_components;
-  if (source.kind == SourceAttribute::Kind::kNormals && !settings.exact) {
-    quantise_normals(source, settings.normal_bits, out);
+  if (source.kind == SourceAttribute::Kind::kNormals) {
+    constexpr int kMostBits = 16;  // of F.2
+    quantise_normals(source, settings.exact ? kMostBits : settings.normal_bits, out);
   } else if (source.kind == SourceAttribute::Kind::kIntegers) {
     quantise_integers(source, out);
   } else if (settings.exact) {

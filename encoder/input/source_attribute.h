@@ -28,6 +28,16 @@ struct SourceAttribute {
   std::size_t num_values() const { return values.size() / num_components; }
 };
 
+// What materials do with a set of texture coordinates.
+struct UvUse {
+  // Along the unit of the coordinates, of the longer side of the largest image that they
+  // address. 0: of none; infinity: of one of an unknown size, as of other types than PNG and
+  // JPEG.
+  double texels = 0.0;
+  // Images along that unit, by KHR_texture_transform; at least 1.
+  double scale = 1.0;
+};
+
 struct SourceAttributes {
   std::vector<SourceAttribute> sets;
   // The shape to which `normal` belongs, if that is not the first frame: positions, and for

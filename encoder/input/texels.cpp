@@ -70,7 +70,7 @@ class TexelFinder {
       find(member);
     }
   }
-  std::vector<double> texels;
+  std::vector<UvUse> uses;
 
  private:
   void add(const Json& info) {
@@ -85,9 +85,11 @@ class TexelFinder {
       }
     }
     if (set >= kMostSets) return;
-    if (texels.size() <= set) texels.resize(set + 1, 0.0);
-    texels[set] =
-        std::max(texels[set], scale * side_of(element(root_, "textures", info, "index")));
+    if (uses.size() <= set) uses.resize(set + 1);
+    UvUse& use = uses[set];
+    use.texels =
+        std::max(use.texels, scale * side_of(element(root_, "textures", info, "index")));
+    use.scale = std::max(use.scale, scale);
   }
 
   static double scale_of(const Json& transform) {
@@ -116,7 +118,7 @@ class TexelFinder {
 
 }  // namespace
 
-std::vector<double> texels_of_uv(std::string_view asset) {
+std::vector<UvUse> uses_of_uv(std::string_view asset) {
   constexpr std::size_t kText = 20;      // behind the headers of the file and its first chunk
   constexpr std::size_t kTextSize = 12;  // where it is
   constexpr std::size_t kChunkHeader = 8;
@@ -127,7 +129,7 @@ std::vector<double> texels_of_uv(std::string_view asset) {
   if (!root.is_object() || !root.contains("materials")) return {};
   TexelFinder finder(root, asset.substr(binary));
   finder.find(root["materials"]);
-  return finder.texels;
+  return finder.uses;
 }
 
 }  // namespace rlpc

@@ -1,15 +1,15 @@
-// How many texels texture coordinates address, by the images of an asset.
+// What texture coordinates address, by the images of an asset.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "encoder/input/source_attribute.h"
+
 namespace rlpc {
 
-// Texels along the unit of texture coordinates, of their longer side, for each set uv0, uv1,
-// ...: of the largest image that the materials of `asset` (a GLB, 7.16; empty: none) address
-// with it. 0: none does; infinity: one of an unknown size, as of other types than PNG and JPEG.
-std::vector<double> texels_of_uv(std::string_view asset);
+// For each set uv0, uv1, ... that the materials of `asset` (a GLB, 7.16; empty: none) use.
+std::vector<UvUse> uses_of_uv(std::string_view asset);
 
 }  // namespace rlpc

@@ -30,7 +30,8 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
       "With exact normals: bits of each of their two coordinates (default: 8, up to 0.6 "
       "degrees off)");
   normal_bits->check(CLI::Range(2, 16))->option_text("N")->group(group);
-  app.add_flag("--exact-attributes", a.exact, "32-bit floats, without loss")
+  app.add_flag("--exact-attributes", a.exact,
+               "Numbers as 32-bit floats, normals of 16 bits (0.01 degrees)")
       ->excludes(uv_bits)
       ->excludes(normal_bits)
       ->group(group);

@@ -382,7 +382,7 @@ int run(EncodeOptions& o) {
   if (o.settings.clips.empty()) o.settings.clips = (*source)->clips();
   if (!o.settings.attributes.dropped) {
     o.settings.asset = (*source)->asset();
-    o.settings.attributes.texels_of_uv = texels_of_uv(o.settings.asset);
+    o.settings.attributes.uv_uses = uses_of_uv(o.settings.asset);
   }
   if (o.dry_run) return run_dry(o, **source);
   const std::size_t told = (*source)->notes().size();
