@@ -1,6 +1,7 @@
 #include "encoder/input/gltf/attributes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -25,16 +26,25 @@ const Attribute* find(const GltfGeometry& geometry, const std::string& semantic)
   return nullptr;
 }
 
+// Of length 1, or zero.
+GltfVec3 face_normal(const std::array<GltfVec3, 3>& corner) {
+  GltfVec3 a{};
+  GltfVec3 b{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    a[c] = corner[1][c] - corner[0][c];
+    b[c] = corner[2][c] - corner[0][c];
+  }
+  GltfVec3 n{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  for (double& x : n) x = length > 0.0 ? x / length : 0.0;
+  return n;
+}
+
 class AttributeCollector {
  public:
   AttributeCollector(const GltfModel& model, std::span<const Triangle> triangles,
-                     const std::vector<bool>& is_mirrored, const GltfPose& first,
-                     std::vector<std::string>& notes)
-      : model_(model),
-        triangles_(triangles),
-        is_mirrored_(is_mirrored),
-        first_(first),
-        notes_(notes) {}
+                     const std::vector<bool>& is_mirrored, const GltfPose& first)
+      : model_(model), triangles_(triangles), is_mirrored_(is_mirrored), first_(first) {}
 
   SourceAttributes collect() {
     SourceAttributes all;
@@ -43,7 +53,7 @@ class AttributeCollector {
       for (const Attribute& a : geometry_of(instance).attributes) semantics.insert(a.semantic);
     }
     for (const std::string& semantic : semantics) {
-      if (auto set = corners(semantic)) all.sets.push_back(std::move(*set));
+      all.sets.push_back(corners(semantic));
     }
     add_triangle_sets(all);
     if (semantics.contains("NORMAL")) add_rest_shape(all);
@@ -55,25 +65,18 @@ class AttributeCollector {
     return model_.geometries[instance.geometry];
   }
 
-  std::optional<SourceAttribute> corners(const std::string& semantic) {
+  SourceAttribute corners(const std::string& semantic) {
     const bool is_normal = semantic == "NORMAL";
     SourceAttribute set;
     set.name = set_name(semantic);
     if (is_normal) set.kind = SourceAttribute::Kind::kNormals;
-    bool is_everywhere = true;
     set.max_value = 0xFFFFFFFF;
     for (const GltfModel::Instance& instance : model_.instances) {
       const Attribute* const a = find(geometry_of(instance), semantic);
-      is_everywhere = is_everywhere && a != nullptr;
       if (a == nullptr) continue;
       set.num_components = std::max(set.num_components, a->width);
       set.max_value =
           set.max_value == 0xFFFFFFFF || set.max_value == a->max_value ? a->max_value : 0;
-    }
-    if (!is_everywhere && is_normal) {
-      notes_.emplace_back(
-          "dropped all normals, as some primitives have none: every face is flat");
-      return std::nullopt;
     }
     if (set.max_value != 0) set.kind = SourceAttribute::Kind::kIntegers;
     for (std::size_t i = 0; i < model_.instances.size(); ++i) {
@@ -84,7 +87,46 @@ class AttributeCollector {
     for (const Triangle& t : triangles_) {
       set.value_of_corner.insert(set.value_of_corner.end(), t.begin(), t.end());
     }
+    if (is_normal) add_flat_normals(set);
     return set;
+  }
+
+  // Calls with the index of each instance without normals, and that of its first triangle.
+  template <class Function>
+  void for_flat_instances(Function&& function) const {
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < model_.instances.size(); ++i) {
+      const GltfGeometry& geometry = geometry_of(model_.instances[i]);
+      if (find(geometry, "NORMAL") == nullptr) function(i, first);
+      first += geometry.triangles.size();
+    }
+  }
+
+  // xyz: of the vertices of an instance.
+  void append_face_normals(std::size_t instance, std::size_t first_triangle,
+                           std::span<const float> xyz, std::vector<float>& normals) const {
+    const GltfModel::Instance& placed = model_.instances[instance];
+    for (std::size_t t = 0; t < geometry_of(placed).triangles.size(); ++t) {
+      std::array<GltfVec3, 3> corner{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t v = triangles_[first_triangle + t][k] - placed.first_vertex;
+        for (std::size_t c = 0; c < 3; ++c) corner[k][c] = xyz[3 * v + c];
+      }
+      const GltfVec3 n = face_normal(corner);
+      for (const double x : n) normals.push_back(static_cast<float>(x));
+    }
+  }
+
+  // Where primitives have no normals, faces are flat (glTF 2.0, 3.7.2.1): a value for each.
+  void add_flat_normals(SourceAttribute& set) const {
+    for_flat_instances([&](std::size_t i, std::size_t first) {
+      const GltfGeometry& geometry = geometry_of(model_.instances[i]);
+      const auto value = static_cast<std::uint32_t>(set.num_values());
+      append_face_normals(i, first, geometry.base, set.values);
+      for (std::size_t c = 0; c < 3 * geometry.triangles.size(); ++c) {
+        set.value_of_corner[3 * first + c] = value + static_cast<std::uint32_t>(c / 3);
+      }
+    });
   }
 
   // Where there are none: white, or the origin of textures.
@@ -149,21 +191,24 @@ class AttributeCollector {
       all.rest_of_corner.insert(all.rest_of_corner.end(), t.begin(), t.end());
     }
     all.first_normals = posed_normals(model_, first_);
+    if (all.first_normals.empty()) return;
+    for_flat_instances([&](std::size_t i, std::size_t first) {
+      append_face_normals(i, first, posed_positions(model_, model_.instances[i], first_),
+                          all.first_normals);
+    });
   }
 
   const GltfModel& model_;
   std::span<const Triangle> triangles_;
   const std::vector<bool>& is_mirrored_;
   const GltfPose& first_;
-  std::vector<std::string>& notes_;
 };
 
 }  // namespace
 
 SourceAttributes gltf_attributes(const GltfModel& model, std::span<const Triangle> triangles,
-                                 const std::vector<bool>& is_mirrored, const GltfPose& first,
-                                 std::vector<std::string>& notes) {
-  return AttributeCollector(model, triangles, is_mirrored, first, notes).collect();
+                                 const std::vector<bool>& is_mirrored, const GltfPose& first) {
+  return AttributeCollector(model, triangles, is_mirrored, first).collect();
 }
 
 }  // namespace rlpc

@@ -8,10 +8,8 @@ namespace rlpc {
 
 // triangles: of the scene, as in FrameSource::Shape before welding, in the order of instances,
 // those of mirrored instances turned. Sets that only some primitives have get usual values
-// elsewhere; normals are left out then, and a note is added about it. first: the pose of the
-// first frame.
+// elsewhere, normals those of the faces. first: the pose of the first frame.
 SourceAttributes gltf_attributes(const GltfModel& model, std::span<const Triangle> triangles,
-                                 const std::vector<bool>& is_mirrored, const GltfPose& first,
-                                 std::vector<std::string>& notes);
+                                 const std::vector<bool>& is_mirrored, const GltfPose& first);
 
 }  // namespace rlpc

@@ -117,6 +117,31 @@ TEST_F(GltfSourceTest, FlipsTrianglesOfMirroringNodesWithSkins) {
   EXPECT_EQ(open(builder)->triangles(), (std::vector<Triangle>{{0, 2, 1}}));
 }
 
+TEST_F(GltfSourceTest, FacesOfPrimitivesWithoutNormalsAreFlat) {
+  GltfBuilder builder = one_triangle();
+  Json smooth = builder.json["meshes"][0]["primitives"][0];
+  smooth["attributes"]["NORMAL"] =
+      builder.add("VEC3", std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1});
+  builder.json["meshes"][0]["primitives"].push_back(smooth);
+  builder.json["nodes"][0]["rotation"] = {kHalf, 0, 0, kHalf};  // z to -y
+  const auto source = open(builder);
+  EXPECT_TRUE(source->notes().empty());
+  const SourceAttributes& all = source->attributes();
+  ASSERT_EQ(all.sets[0].name, "normal");
+  const auto of_corner = [&](const std::vector<float>& values, std::size_t corner) {
+    const std::size_t i = all.sets[0].value_of_corner[corner];
+    return std::vector<float>(values.begin() + static_cast<std::ptrdiff_t>(3 * i),
+                              values.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
+  };
+  ASSERT_EQ(all.first_normals.size(), all.sets[0].values.size());
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(of_corner(all.sets[0].values, k), (std::vector<float>{0, 0, 1}));
+    expect_near(of_corner(all.first_normals, k), {0, -1, 0});
+  }
+  expect_near(of_corner(all.sets[0].values, 4), {0, 1, 0});
+  expect_near(of_corner(all.first_normals, 4), {0, 0, 1});
+}
+
 TEST_F(GltfSourceTest, AppliesMatricesOfNodes) {
   GltfBuilder builder = one_triangle();
   builder.json["nodes"][0]["matrix"] = {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 5, 6, 7, 1};

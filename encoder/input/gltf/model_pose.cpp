@@ -70,15 +70,30 @@ std::vector<Affine> joint_maps(const GltfModel& model, std::uint32_t skin,
   return joints;
 }
 
+std::vector<float> posed_positions(const GltfModel& model, const GltfModel::Instance& instance,
+                                   const GltfPose& pose) {
+  const GltfGeometry& geometry = model.geometries[instance.geometry];
+  std::vector<double> positions;
+  morph(geometry, target_weights(model, instance.node, pose), positions);
+  std::vector<float> placed(geometry.base.size());
+  if (instance.skin) {
+    place_by_joints(geometry, positions, joint_maps(model, *instance.skin, pose), placed);
+  } else {
+    place(positions, pose.to_scene[instance.node], placed);
+  }
+  return placed;
+}
+
 std::vector<float> posed_normals(const GltfModel& model, const GltfPose& pose) {
   std::vector<float> all;
   for (const GltfModel::Instance& instance : model.instances) {
     const GltfGeometry& geometry = model.geometries[instance.geometry];
     const auto* const normals = normals_of(geometry);
-    if (normals == nullptr ||
-        is_morphed(geometry, target_weights(model, instance.node, pose))) {
-      return {};
+    if (normals == nullptr) {
+      all.resize(all.size() + geometry.base.size());
+      continue;
     }
+    if (is_morphed(geometry, target_weights(model, instance.node, pose))) return {};
     std::vector<Affine> joints;
     if (instance.skin) joints = joint_maps(model, *instance.skin, pose);
     for (std::size_t v = 0; v < geometry.num_vertices(); ++v) {

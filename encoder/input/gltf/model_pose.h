@@ -16,10 +16,14 @@ const std::vector<double>& target_weights(const GltfModel& model, std::uint32_t 
 std::vector<Affine> joint_maps(const GltfModel& model, std::uint32_t skin,
                                const GltfPose& pose);
 
+// xyz of the vertices of an instance.
+std::vector<float> posed_positions(const GltfModel& model, const GltfModel::Instance& instance,
+                                   const GltfPose& pose);
+
 // The normals of all vertices, in the order of instances, as viewers make them in a pose: those
 // of skins by the linear part of the weighted joints, others by the inverse transpose of their
-// node's map; of length 1, or zero. Empty if a primitive has no normals, or if morph targets
-// move one.
+// node's map; of length 1, or zero, as where a primitive has none. Empty if morph targets move
+// one of the others.
 std::vector<float> posed_normals(const GltfModel& model, const GltfPose& pose);
 
 }  // namespace rlpc

@@ -153,7 +153,7 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   shape.triangles = triangles_of(*model, is_mirrored);
   shape.notes = model->notes;
   shape.asset = std::move(model->asset);
-  shape.attributes = gltf_attributes(*model, shape.triangles, is_mirrored, first, shape.notes);
+  shape.attributes = gltf_attributes(*model, shape.triangles, is_mirrored, first);
   shape.files = model->files;
   shape.clips = clips_of(*model, *first_frame);
   shape.memory_bytes = model->memory_bytes;
