@@ -16,9 +16,8 @@
 // bounded by one GOF, the skinned models that it could use (at most eight, which count towards
 // the limits of a GOF) and one that is being replaced, plus four frames and max_cached_bytes;
 // every size in a stream is checked against its level and DecodeLimits before anything is
-// allocated. A Decoder is used
-// by one thread at a time; different Decoders are independent. Errors are sticky until seek()
-// succeeds, for example to a frame past the damage.
+// allocated. A Decoder is used by one thread at a time; different Decoders are independent.
+// Errors are sticky until seek() succeeds, for example to a frame past the damage.
 #pragma once
 
 #include <cstdint>

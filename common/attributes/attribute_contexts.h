@@ -91,8 +91,8 @@ class ValueContexts {
   std::array<BitModel, 64>& float_sizes(std::uint32_t x) {
     return float_sizes_[order_.class_of[x]];
   }
-  // ValueExpected( c, x ). tuned on the six models with texture coordinates or normals: shares
-  // of 40, 124, 92 and of 72, 184 without the latest take 1 % more bytes.
+  // ValueExpected( c, x ). Its shares are tuned on the six models with texture coordinates or
+  // normals: 40, 124, 92, or 72, 184 without the latest, take 1 % more bytes.
   std::uint32_t expected(std::uint32_t c, std::uint32_t x) const {
     const std::uint64_t mean = mean_[order_.class_of[x]][c];
     std::uint64_t ring = mean;

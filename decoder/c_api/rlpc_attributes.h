@@ -44,8 +44,8 @@ typedef enum rlpc_value_kind {
 
 typedef struct rlpc_attribute {
   size_t struct_size;  // as passed to rlpc_decoder_attribute
-  // "uv0", "normal", "colour0", "material", "part" and others (F.4). Valid until the handle is
-  // closed.
+  // "uv0", "normal", "colour0", "material", "part" and others (Table F-1). Valid until the
+  // handle is closed; ends at a zero byte, if the name has one.
   const char* name;
   uint32_t domain;          // rlpc_domain
   uint32_t kind;            // rlpc_value_kind

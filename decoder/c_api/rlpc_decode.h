@@ -5,10 +5,9 @@
 //   if (status == RLPC_OK) {
 //     rlpc_stream_info info;
 //     rlpc_decoder_info(decoder, &info, sizeof info);
-//     float* xyz = malloc(3 * (size_t)info.num_vertices * sizeof *xyz);
-//     while ((status = rlpc_decoder_next_floats(decoder, xyz, 3 * info.num_vertices)) ==
-//     RLPC_OK)
-//       use(xyz);
+//     const size_t length = 3 * (size_t)info.num_vertices;
+//     float* xyz = malloc(length * sizeof *xyz);
+//     while ((status = rlpc_decoder_next_floats(decoder, xyz, length)) == RLPC_OK) use(xyz);
 //     free(xyz);
 //   }
 //   if (status != RLPC_END) fprintf(stderr, "%s\n", rlpc_decoder_error_text(decoder));
@@ -189,9 +188,10 @@ RLPC_API rlpc_status rlpc_decoder_coarse_vertices(rlpc_decoder* decoder, uint32_
 RLPC_API const char* rlpc_decoder_metadata(const rlpc_decoder* decoder);
 // How many ancillary units have counted as absent so far (skip_damaged_units).
 RLPC_API uint32_t rlpc_decoder_num_damaged_units(const rlpc_decoder* decoder);
-// The clips of the latest clip table so far: their number, and one of them. The name is valid
-// until the next call that decodes or seeks, and ends at a zero byte, if it has one. index:
-// below the number, otherwise RLPC_BAD_ARGUMENT.
+// The clips of the latest clip table so far: their number, and one of them, as the table has
+// it: in a stream of unknown length it may end after the last frame. The name is valid until
+// the next call that decodes or seeks, and ends at a zero byte, if it has one. index: below the
+// number, otherwise RLPC_BAD_ARGUMENT.
 RLPC_API uint32_t rlpc_decoder_num_clips(const rlpc_decoder* decoder);
 RLPC_API rlpc_status rlpc_decoder_clip(rlpc_decoder* decoder, uint32_t index, rlpc_clip* clip);
 

@@ -4,10 +4,9 @@
 //   rlpc_frame_output output;
 //   rlpc_frame_output_init(&output, sizeof output);
 //   output.positions = (rlpc_channel){vertices, vertices_bytes, sizeof(vertex), RLPC_FLOAT};
-//   output.normals = (rlpc_channel){&vertices->normal, vertices_bytes - offsetof(vertex,
-//   normal),
-//                                   sizeof(vertex), RLPC_INT8};
-//   rlpc_decoder_frame(decoder, 17, &output);
+//   const size_t normal_bytes = vertices_bytes - offsetof(vertex, normal);
+//   output.normals = (rlpc_channel){&vertices->normal, normal_bytes, sizeof(vertex),
+//   RLPC_INT8}; rlpc_decoder_frame(decoder, 17, &output);
 #pragma once
 
 #include <stddef.h>

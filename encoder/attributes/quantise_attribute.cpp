@@ -201,7 +201,6 @@ QuantisedAttribute quantise_attribute(const SourceAttribute& source,
   out.header.domain = source.domain;
   out.header.num_components = source.num_components;
   if (source.kind == SourceAttribute::Kind::kNormals) {
-    constexpr int kMostBits = 16;  // of F.2
     quantise_normals(source, settings.exact ? kMostBits : settings.normal_bits, out);
   } else if (source.kind == SourceAttribute::Kind::kIntegers) {
     quantise_integers(source, out);
