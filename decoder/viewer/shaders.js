@@ -78,7 +78,8 @@ export const kSurface = {
   uniform bool flatShading; uniform bool isPoint; uniform float deviationScale;
   out vec4 colour;
   ${kRampColour} ${kLit} ${kToneMap}
-  // A normal map moves n, which faces the eye, along the texture coordinates; +y is up in the image.
+  // n, facing the eye, tilted by the normal map. Tangents come from screen-space derivatives, as
+  // streams have none; +y of the map is up in the image.
   vec3 bent(vec3 n) {
     vec3 x = dFdx(world), y = dFdy(world);
     vec2 s = dFdx(normalAt), t = dFdy(normalAt);

@@ -14,8 +14,8 @@ enum class NormalChoice : std::uint8_t { kAuto, kSmoothing, kExact };
 
 struct AttributeSettings {
   bool dropped = false;  // no attribute unit
-  // Numbers as 32-bit floats, normals in 16 bits a coordinate, and not as smoothing unless that
-  // is chosen; whatever the bits below.
+  // Numbers as 32-bit floats, normals with 16 bits per coordinate, whatever the bits below.
+  // Normals are coded as smoothing only if that is chosen.
   bool exact = false;
   // Bits of a texture coordinate after the point: 12 are 1/4096 of an image. Where coordinates
   // repeat an image of a known size, at least so many over their range.

@@ -15,7 +15,7 @@ export interface Clip {
 export interface StreamInfo {
   readonly vertices: number;
   readonly triangles: number;
-  /** Of an open-ended stream that has been cut off, 1: nothing tells how many it has. */
+  /** Of an open-ended stream that has been cut off: those of its whole GOFs. */
   readonly frames: number;
   /** Frames per second. */
   readonly frameRate: number;
@@ -47,7 +47,7 @@ export type AttributeKind = "integers" | "unitVectors" | "floats" | "smoothing";
 
 /** A set of values, the same in all frames. */
 export interface Attribute {
-  /** "uv0", "normal", "colour0", "material", "part" and others (F.4 of the specification). */
+  /** "uv0", "normal", "colour0", "material", "part" and others (Table F-1 of the specification). */
   name: string;
   domain: AttributeDomain;
   kind: AttributeKind;
@@ -206,7 +206,7 @@ export class RlpcDecoder {
   edges(): Promise<Uint32Array>;
   /** Loads the rest of the stream, while frames are decoded. */
   download(options?: { signal?: AbortSignal }): Promise<Blob>;
-  /** Ends the worker, and rejects what waits. */
+  /** Rejects pending requests. The worker ends with the last decoder that uses it. */
   close(): void;
 }
 

@@ -1,4 +1,4 @@
-// What the names of attributes mean (F.4), for three.js and for the player.
+// What the names of attributes mean (Table F-1), for three.js and for the player.
 
 /** Of attributes() of a decoder: whether it has normals that can be computed for each frame. */
 export function hasNormals(sets) {

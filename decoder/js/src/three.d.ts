@@ -55,8 +55,8 @@ export class RLPCMesh extends Mesh<BufferGeometry, Material | Material[], RLPCMe
   /** Seconds from the start of the clip; can be set. The frame is shown by the first update() after
    * it has been decoded. */
   time: number;
-  /** Sets `time`, and resolves once its frame is shown, or that of a later seek. Rejects with an
-   * AbortError after dispose(). */
+  /** Sets `time`, and resolves once its frame is shown, or that of a later seek, or once it could not
+   * be decoded, of which an event tells. Rejects with an AbortError after dispose(). */
   seek(seconds: number): Promise<void>;
   /** Seconds that the clip takes at speed 1. */
   readonly duration: number;

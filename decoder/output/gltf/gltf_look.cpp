@@ -74,12 +74,13 @@ void GltfLook::add_values(GltfJson& attributes, GlbBuffers& buffers) const {
   std::uint32_t next = 0;
   for (const auto& [number, values] : uvs_) {
     const std::uint32_t accessor = buffers.add_texture_coordinates(values.numbers);
-    // Materials name sets by number, which must not have gaps.
+    // glTF allows no gaps between the numbers, by which materials choose sets: copies fill
+    // them.
     for (; next <= number; ++next) attributes["TEXCOORD_" + std::to_string(next)] = accessor;
   }
   next = 0;
   for (const auto& [number, values] : colours_) {
-    if (number != next) break;  // COLOR_0 would colour the surface
+    if (number != next) break;  // a copy that fills a gap would tint the surface
     attributes["COLOR_" + std::to_string(next++)] =
         buffers.add_vertex_values(values.numbers, values.width);
   }

@@ -124,29 +124,6 @@ class ClipReader {
   GltfErrors& errors_;
 };
 
-}  // namespace
-
-double GltfClip::num_frames(const FrameRate& rate) const {
-  const double steps = (end - start) * rate.numerator / rate.denominator;
-  return std::floor(steps * (1 + 0x1p-24) + 1e-3) + 1.0;
-}
-
-double GltfClip::time_of(std::uint32_t frame, const FrameRate& rate) const {
-  return static_cast<float>(start +
-                            static_cast<double>(frame) * rate.denominator / rate.numerator);
-}
-
-std::string gltf_animation_names(const GltfDocument& document) {
-  constexpr std::size_t kMost = 20;
-  std::string text;
-  for (std::size_t i = 0; i < document.animations.size() && i < kMost; ++i) {
-    text += (i > 0 ? ", " : "") + gltf_quoted(document.animations[i].name);
-  }
-  return text + (document.animations.size() > kMost ? ", ..." : "");
-}
-
-namespace {
-
 // Those that one name selects; none with an error.
 std::vector<std::uint32_t> animations_of(const GltfDocument& document, const std::string& name,
                                          GltfErrors& errors) {
@@ -180,6 +157,25 @@ std::vector<std::uint32_t> animations_of(const GltfDocument& document, const std
 }
 
 }  // namespace
+
+double GltfClip::num_frames(const FrameRate& rate) const {
+  const double steps = (end - start) * rate.numerator / rate.denominator;
+  return std::floor(steps * (1 + 0x1p-24) + 1e-3) + 1.0;
+}
+
+double GltfClip::time_of(std::uint32_t frame, const FrameRate& rate) const {
+  return static_cast<float>(start +
+                            static_cast<double>(frame) * rate.denominator / rate.numerator);
+}
+
+std::string gltf_animation_names(const GltfDocument& document) {
+  constexpr std::size_t kMost = 20;
+  std::string text;
+  for (std::size_t i = 0; i < document.animations.size() && i < kMost; ++i) {
+    text += (i > 0 ? ", " : "") + gltf_quoted(document.animations[i].name);
+  }
+  return text + (document.animations.size() > kMost ? ", ..." : "");
+}
 
 std::vector<std::uint32_t> choose_animations(const GltfDocument& document,
                                              std::span<const std::string> names,
