@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "common/io/messages.h"
 #include "decoder/output/obj_bytes.h"
 #include "decoder/output/ply_bytes.h"
 
@@ -115,6 +116,22 @@ std::unique_ptr<MeshBytes> make_mesh_bytes(SinkFormat format, const SinkOptions&
   if (format == SinkFormat::kObj) return std::make_unique<ObjBytes>(options, materials);
   assert(format == SinkFormat::kPly);
   return std::make_unique<PlyBytes>(options);
+}
+
+std::vector<std::string> left_out_remark(SinkFormat format, const SinkOptions& options,
+                                         const MeshBytes& mesh) {
+  std::string names;
+  for (const AttributeSet& set : options.attributes) {
+    if (mesh.holds(set)) continue;
+    names += names.empty() ? "" : ", ";
+    names += printable({set.header.name.begin(), set.header.name.end()});
+  }
+  if (names.empty()) return {};
+  const char* const hold = format == SinkFormat::kObj
+                               ? "OBJ holds the UVs of images, colours of vertices, normals, "
+                                 "materials and parts"
+                               : "PLY holds uv0, colour0 and normals";
+  return {"left out: " + names + " (" + hold + ")"};
 }
 
 }  // namespace rlpc

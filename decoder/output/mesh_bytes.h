@@ -65,11 +65,18 @@ class MeshBytes {
 
   // The whole file of one frame, valid until the next call.
   virtual const std::string& frame(std::span<const std::int32_t> positions) = 0;
+  // Whether files hold the values of a set of options.attributes.
+  virtual bool holds(const AttributeSet& set) const = 0;
 };
 
 // kObj, or kPly as options.ascii says; options must outlive it. materials: the name of the .mtl
 // file beside OBJ files, empty if there is none.
 std::unique_ptr<MeshBytes> make_mesh_bytes(SinkFormat format, const SinkOptions& options,
                                            const std::string& materials);
+
+// A line that names the sets that files of this format do not hold, if there are any; see
+// FrameSink::remarks().
+std::vector<std::string> left_out_remark(SinkFormat format, const SinkOptions& options,
+                                         const MeshBytes& mesh);
 
 }  // namespace rlpc

@@ -80,6 +80,21 @@ TEST(MeshBytes, PlyFilesSplitVertices) {
   EXPECT_EQ(bytes.size() - bytes.find("end_header\n") - 11, 5U * (8 * 4 + 3) + 2 * 13);
 }
 
+TEST(MeshBytes, WhatFilesCannotHoldIsTold) {
+  SinkOptions options = square();
+  const auto told = [&](SinkFormat format) {
+    return left_out_remark(format, options, *make_mesh_bytes(format, options, ""));
+  };
+  EXPECT_TRUE(told(SinkFormat::kObj).empty());
+  ASSERT_EQ(told(SinkFormat::kPly).size(), 1U);
+  EXPECT_TRUE(told(SinkFormat::kPly)[0].starts_with("left out: material, part (PLY holds"));
+  options.attributes[0].header.name = "uv1";
+  options.attributes[2].header.domain = AttributeDomain::kCorner;
+  options.attributes[2].value_of_corner = {0, 1, 2, 0, 2, 3};
+  ASSERT_EQ(told(SinkFormat::kObj).size(), 1U);
+  EXPECT_TRUE(told(SinkFormat::kObj)[0].starts_with("left out: uv1, colour0 (OBJ holds"));
+}
+
 TEST(MeshBytes, NormalsFollowTheFrame) {
   SinkOptions options = square();
   options.attributes = {options.attributes[1]};

@@ -26,7 +26,8 @@ class MeshSink : public FrameSink {
  public:
   MeshSink(SinkFormat format, SinkOptions options, fs::path folder, NumberedName name,
            TemporaryFolder temporary, std::vector<CompanionFile> materials)
-      : options_(std::move(options)),
+      : format_(format),
+        options_(std::move(options)),
         materials_(std::move(materials)),
         mesh_(make_mesh_bytes(format, options_,
                               materials_.empty() ? std::string() : materials_[0].name)),
@@ -64,6 +65,10 @@ class MeshSink : public FrameSink {
     return std::nullopt;
   }
 
+  std::vector<std::string> remarks() const override {
+    return left_out_remark(format_, options_, *mesh_);
+  }
+
  private:
   std::string file_name(std::uint32_t frame) const {
     return name_.with(std::uint64_t{options_.first_number} + frame);
@@ -80,6 +85,7 @@ class MeshSink : public FrameSink {
     return std::nullopt;
   }
 
+  SinkFormat format_;
   SinkOptions options_;
   std::vector<CompanionFile> materials_;  // the .mtl file first; empty: none
   std::unique_ptr<MeshBytes> mesh_;
@@ -95,7 +101,8 @@ class SingleMeshSink : public FrameSink {
   // library: the name of the .mtl file, the first of materials; empty: there are none.
   SingleMeshSink(SinkFormat format, SinkOptions options, OutputFile file,
                  const std::string& library, CompanionFiles materials)
-      : options_(std::move(options)),
+      : format_(format),
+        options_(std::move(options)),
         mesh_(make_mesh_bytes(format, options_, library)),
         file_(std::move(file)),
         materials_(std::move(materials)) {}
@@ -112,7 +119,12 @@ class SingleMeshSink : public FrameSink {
     return file_.commit();
   }
 
+  std::vector<std::string> remarks() const override {
+    return left_out_remark(format_, options_, *mesh_);
+  }
+
  private:
+  SinkFormat format_;
   SinkOptions options_;
   std::unique_ptr<MeshBytes> mesh_;
   OutputFile file_;

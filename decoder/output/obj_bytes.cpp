@@ -102,6 +102,14 @@ const std::string& ObjBytes::frame(std::span<const std::int32_t> positions) {
   return bytes_ += faces_;
 }
 
+bool ObjBytes::holds(const AttributeSet& set) const {
+  if (&set == attributes_.colour) return colour_width_ > 0;
+  return &set == attributes_.normal || &set == attributes_.material ||
+         &set == attributes_.part ||
+         std::any_of(uv_lists_.begin(), uv_lists_.end(),
+                     [&](const UvList& list) { return list.set == &set; });
+}
+
 void ObjBytes::append_vertices() {
   for (std::size_t v = 0; v < xyz_.size() / 3; ++v) {
     bytes_ += 'v';

@@ -17,6 +17,7 @@ class ObjBytes : public MeshBytes {
  public:
   ObjBytes(const SinkOptions& options, const std::string& materials);
   const std::string& frame(std::span<const std::int32_t> positions) override;
+  bool holds(const AttributeSet& set) const override;
 
  private:
   // Texture coordinates of some materials.

@@ -108,7 +108,13 @@ class ObjMaterials::Images {
  private:
   const GltfJson* image_of(const GltfJson* texture) const {
     const GltfJson* const found = element("textures", member(texture, "index"));
-    return element("images", member(found, "source"));
+    if (const GltfJson* const image = element("images", member(found, "source"))) return image;
+    const GltfJson* const extensions = member(found, "extensions");
+    for (const char* const extension : {"EXT_texture_webp", "KHR_texture_basisu"}) {
+      const GltfJson* const source = member(member(extensions, extension), "source");
+      if (const GltfJson* const image = element("images", source)) return image;
+    }
+    return nullptr;
   }
   const GltfJson* element(const char* list, const GltfJson* number) const {
     const GltfJson* const all = member(&asset_.root(), list);
@@ -174,9 +180,12 @@ std::string ObjMaterials::mtl_of(std::uint32_t number, Images& images) const {
   const GltfJson* const pbr = member(material, "pbrMetallicRoughness");
   const GltfJson* const base = member(pbr, "baseColorFactor");
   const bool has_base = base != nullptr && base->is_array() && base->size() == 4;
+  // Alpha has no meaning in others.
+  const GltfJson* const mode = member(material, "alphaMode");
+  const bool has_alpha = mode != nullptr && (*mode == "BLEND" || *mode == "MASK");
   if (has_base) {
     append_colour(mtl, "Kd", base);
-    append_factor(mtl, "d", &(*base)[3]);
+    if (has_alpha) append_factor(mtl, "d", &(*base)[3]);
   } else {
     mtl += "Kd 1 1 1\n";
   }
@@ -184,6 +193,7 @@ std::string ObjMaterials::mtl_of(std::uint32_t number, Images& images) const {
   append_factor(mtl, "Pr", member(pbr, "roughnessFactor"));
   append_factor(mtl, "Pm", member(pbr, "metallicFactor"));
   images.append_map(mtl, "map_Kd", member(pbr, "baseColorTexture"));
+  if (has_alpha) images.append_map(mtl, "map_d", member(pbr, "baseColorTexture"));
   images.append_map(mtl, "map_Ke", member(material, "emissiveTexture"));
   images.append_map(mtl, "norm", member(material, "normalTexture"));
   return mtl;

@@ -45,7 +45,7 @@ SinkOptions mesh_with(const std::string& asset) {
 }
 
 constexpr const char* kMaterials = R"("materials":[
-  {"name":"skin tone","pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,0.5],
+  {"name":"skin tone","alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,0.5],
    "roughnessFactor":0.75,"metallicFactor":0,"baseColorTexture":{"index":0}}},
   {"emissiveFactor":[1,0,0],"emissiveTexture":{"index":1}}],
   "textures":[{"source":0},{"source":1}],
@@ -62,6 +62,7 @@ TEST(ObjMaterials, ComeFromTheAssetOfTheStream) {
   EXPECT_EQ(files[0].bytes,
             "# materials of rlpcdec\n"
             "newmtl skin_tone\nKd 0.5 0.25 1\nd 0.5\nPr 0.75\nPm 0\nmap_Kd walk_0.png\n"
+            "map_d walk_0.png\n"
             "newmtl material_1\nKd 1 1 1\nKe 1 0 0\nmap_Ke walk_0.png\n"
             "newmtl material_5\nKd 0.8 0.8 0.8\n");
   EXPECT_EQ(files[1].name, "walk_0.png");
@@ -71,6 +72,19 @@ TEST(ObjMaterials, ComeFromTheAssetOfTheStream) {
   EXPECT_NE(obj.find("g head\nusemtl material_1\nf 1 2 3\ng part_1\nusemtl skin_tone\nf"),
             std::string::npos)
       << obj;
+}
+
+TEST(ObjMaterials, ImagesOfExtensionsAreFound) {
+  constexpr const char* kWebp = R"("materials":[
+    {"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5],"baseColorTexture":{"index":0}}}],
+    "textures":[{"extensions":{"EXT_texture_webp":{"source":0}}}],"images":[{"bufferView":0}])";
+  const SinkOptions options =
+      mesh_with(with_views(kWebp, R"({"buffer":0,"byteOffset":0,"byteLength":16})"));
+  const auto files = ObjMaterials(options).files("walk");
+  ASSERT_EQ(files.size(), 2U);
+  // It is opaque, whatever the alpha.
+  EXPECT_NE(files[0].bytes.find("\nKd 1 1 1\nmap_Kd walk_0.png\nnewmtl"), std::string::npos)
+      << files[0].bytes;
 }
 
 AttributeSet coordinates(const std::string& name, std::uint32_t first) {

@@ -61,6 +61,10 @@ void PlyBytes::append_faces() {
   }
 }
 
+bool PlyBytes::holds(const AttributeSet& set) const {
+  return &set == attributes_.uv || &set == attributes_.normal || &set == attributes_.colour;
+}
+
 const std::string& PlyBytes::frame(std::span<const std::int32_t> positions) {
   bytes_ = header_;
   xyz_.resize(positions.size());

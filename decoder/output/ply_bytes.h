@@ -17,6 +17,7 @@ class PlyBytes : public MeshBytes {
  public:
   explicit PlyBytes(const SinkOptions& options);
   const std::string& frame(std::span<const std::int32_t> positions) override;
+  bool holds(const AttributeSet& set) const override;
 
  private:
   // A set, and of each vertex the index of its value.

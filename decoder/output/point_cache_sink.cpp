@@ -73,10 +73,13 @@ class PointCacheSink : public FrameSink {
     return points_.commit();
   }
 
+  std::vector<std::string> remarks() const override { return remarks_; }
+
  private:
   std::optional<OutputError> write_mesh(std::span<const std::int32_t> positions) {
-    return mesh_->write(
-        make_mesh_bytes(SinkFormat::kObj, options_, library_)->frame(positions));
+    const auto mesh = make_mesh_bytes(SinkFormat::kObj, options_, library_);
+    remarks_ = left_out_remark(SinkFormat::kObj, options_, *mesh);
+    return mesh_->write(mesh->frame(positions));
   }
 
   // Frames, points, and the times of the frames in seconds.
@@ -97,6 +100,7 @@ class PointCacheSink : public FrameSink {
   std::string library_;
   CompanionFiles materials_;
   std::string bytes_;
+  std::vector<std::string> remarks_;
   std::uint32_t written_ = 0;
 };
 

@@ -30,6 +30,7 @@ struct Mtl {
   std::optional<double> roughness;
   std::optional<double> metalness;
   MtlMap base_image;
+  MtlMap alpha_image;
   MtlMap emission_image;
   MtlMap normal_image;
 };
@@ -69,6 +70,8 @@ void read_line(std::string_view keyword, TextWords& words, Mtl& material) {
     if (exponent) material.roughness = std::sqrt(2.0 / (std::max(*exponent, 0.0) + 2.0));
   } else if (keyword == "map_Kd") {
     material.base_image = read_mtl_map(words);
+  } else if (keyword == "map_d") {
+    material.alpha_image = read_mtl_map(words);
   } else if (keyword == "map_Ke") {
     material.emission_image = read_mtl_map(words);
   } else if (keyword == "norm") {
@@ -131,7 +134,10 @@ class AssetMaker {
     if (base != white || opacity < 1.0) {
       pbr["baseColorFactor"] = {base[0], base[1], base[2], opacity};
     }
-    if (opacity < 1.0) material["alphaMode"] = "BLEND";
+    // glTF has no other alpha than that of the base colour.
+    const bool uses_alpha =
+        pbr.contains("baseColorTexture") && mtl.alpha_image.name == mtl.base_image.name;
+    if (opacity < 1.0 || uses_alpha) material["alphaMode"] = "BLEND";
     const Json glow = texture(mtl.emission_image);
     if (!glow.is_null()) material["emissiveTexture"] = glow;
     const Colour black{};

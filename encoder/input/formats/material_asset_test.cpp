@@ -92,6 +92,19 @@ TEST_F(MaterialAssetTest, ImagesAreCarriedOnce) {
       false);
 }
 
+TEST_F(MaterialAssetTest, AlphaIsThatOfTheBaseImage) {
+  write("skin.png", kPng);
+  write("holes.png", kPng);
+  const Json root = json_of(make({"a", "b", "c"},
+                                 "newmtl a\nmap_Kd skin.png\nmap_d skin.png\n"
+                                 "newmtl b\nmap_Kd skin.png\nmap_d holes.png\n"
+                                 "newmtl c\nKd 1 1 1\nmap_d holes.png\n")
+                                .glb);
+  EXPECT_EQ(root["materials"][0]["alphaMode"], "BLEND");
+  EXPECT_FALSE(root["materials"][1].contains("alphaMode"));
+  EXPECT_FALSE(root["materials"][2].contains("alphaMode"));
+}
+
 TEST_F(MaterialAssetTest, OptionsOfImagesBecomeATransform) {
   write("maps/my skin.png", kPng);
   const Json root = json_of(make({"a", "b"},

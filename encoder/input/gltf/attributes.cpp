@@ -191,7 +191,6 @@ class AttributeCollector {
       all.rest_of_corner.insert(all.rest_of_corner.end(), t.begin(), t.end());
     }
     all.first_normals = posed_normals(model_, first_);
-    if (all.first_normals.empty()) return;
     for_flat_instances([&](std::size_t i, std::size_t first) {
       append_face_normals(i, first, posed_positions(model_, model_.instances[i], first_),
                           all.first_normals);

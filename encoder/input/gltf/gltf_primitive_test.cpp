@@ -64,6 +64,22 @@ TEST_F(GltfPrimitiveTest, AddsMorphTargetsByTheWeightsOfNodeOrMesh) {
   EXPECT_EQ(frame_of(*open(builder), 0), (std::vector<float>{0, 0, 2, 1, -4, 2, 0, 1, 2}));
 }
 
+TEST_F(GltfPrimitiveTest, TurnsNormalsByMorphTargetsThenByNodes) {
+  GltfBuilder builder = with_targets();
+  Json& primitive = builder.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["NORMAL"] =
+      builder.add("VEC3", std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1});
+  primitive["targets"][1]["NORMAL"] =
+      builder.add("VEC3", std::vector<float>{0, 0, 0, 0, 2, -2, 0, 0, 0});
+  builder.json["meshes"][0]["weights"] = {1, 0.5};      // the first target turns no normal
+  builder.json["nodes"][0]["rotation"] = {0, 0, 1, 0};  // half a turn
+  const auto source = open(builder);
+  const SourceAttributes& all = source->attributes();
+  ASSERT_EQ(all.sets[0].name, "normal");
+  EXPECT_EQ(all.sets[0].values, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
+  expect_near(all.first_normals, {0, 0, 1, 0, -1, 0, 0, 0, 1});
+}
+
 TEST_F(GltfPrimitiveTest, AnimatesWeightsWithEveryInterpolation) {
   const std::map<std::string, float> at_a_quarter{
       {"STEP", 0}, {"LINEAR", 0.25}, {"CUBICSPLINE", 0.15625}};

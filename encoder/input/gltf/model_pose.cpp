@@ -44,12 +44,6 @@ const GltfGeometry::Attribute* normals_of(const GltfGeometry& geometry) {
   return found == geometry.attributes.end() || found->width != 3 ? nullptr : &*found;
 }
 
-bool is_morphed(const GltfGeometry& geometry, const std::vector<double>& weights) {
-  return std::any_of(geometry.targets.begin(), geometry.targets.end(), [&](const auto& target) {
-    return target.number < weights.size() && weights[target.number] != 0.0;
-  });
-}
-
 }  // namespace
 
 const std::vector<double>& target_weights(const GltfModel& model, std::uint32_t node,
@@ -74,7 +68,7 @@ std::vector<float> posed_positions(const GltfModel& model, const GltfModel::Inst
                                    const GltfPose& pose) {
   const GltfGeometry& geometry = model.geometries[instance.geometry];
   std::vector<double> positions;
-  morph(geometry, target_weights(model, instance.node, pose), positions);
+  morph(geometry.base, geometry.targets, target_weights(model, instance.node, pose), positions);
   std::vector<float> placed(geometry.base.size());
   if (instance.skin) {
     place_by_joints(geometry, positions, joint_maps(model, *instance.skin, pose), placed);
@@ -93,12 +87,13 @@ std::vector<float> posed_normals(const GltfModel& model, const GltfPose& pose) {
       all.resize(all.size() + geometry.base.size());
       continue;
     }
-    if (is_morphed(geometry, target_weights(model, instance.node, pose))) return {};
+    std::vector<double> morphed;
+    morph(normals->values, geometry.normal_targets, target_weights(model, instance.node, pose),
+          morphed);
     std::vector<Affine> joints;
     if (instance.skin) joints = joint_maps(model, *instance.skin, pose);
     for (std::size_t v = 0; v < geometry.num_vertices(); ++v) {
-      const GltfVec3 n{normals->values[3 * v], normals->values[3 * v + 1],
-                       normals->values[3 * v + 2]};
+      const GltfVec3 n{morphed[3 * v], morphed[3 * v + 1], morphed[3 * v + 2]};
       if (!instance.skin) {
         append_unit(normal_image(pose.to_scene[instance.node], n), all);
         continue;

@@ -22,8 +22,7 @@ std::vector<float> posed_positions(const GltfModel& model, const GltfModel::Inst
 
 // The normals of all vertices, in the order of instances, as viewers make them in a pose: those
 // of skins by the linear part of the weighted joints, others by the inverse transpose of their
-// node's map; of length 1, or zero, as where a primitive has none. Empty if morph targets move
-// one of the others.
+// node's map, both after morph targets; of length 1, or zero, as where a primitive has none.
 std::vector<float> posed_normals(const GltfModel& model, const GltfPose& pose);
 
 }  // namespace rlpc

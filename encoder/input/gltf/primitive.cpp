@@ -21,16 +21,13 @@ class GeometryReader {
   GltfGeometry read(std::size_t num_joints) {
     GltfGeometry geometry;
     geometry.base = values_.floats(primitive_.positions, "VEC3", GltfValues::Integers::kToo);
-    for (std::size_t t = 0; t < primitive_.targets.size(); ++t) {
-      const std::optional<std::uint32_t> target = primitive_.targets[t];
-      if (!target || !has_count(*target) || !takes_deltas(*target)) continue;
-      std::vector<GltfDelta> deltas = values_.deltas(*target);
-      if (!deltas.empty()) geometry.targets.push_back({t, std::move(deltas)});
-    }
+    geometry.targets = targets(primitive_.targets);
     if (num_joints > 0 && !errors_) read_influences(num_joints, geometry);
     if (!errors_) geometry.triangles = triangles(corners(geometry.num_vertices()));
     for (const GltfAttribute& attribute : primitive_.attributes) {
       if (!errors_ && has_count(attribute.accessor)) read_attribute(attribute, geometry);
+      if (attribute.semantic == "NORMAL")
+        geometry.normal_targets = targets(primitive_.normal_targets);
     }
     return geometry;
   }
@@ -51,6 +48,18 @@ class GeometryReader {
     const GltfAccessor& a = values_.accessor(accessor);
     const std::uint64_t count = a.base ? a.count : a.sparse ? a.sparse->count : 0;
     return values_.memory().take(primitive_.path, 3 * sizeof(GltfDelta) * count);
+  }
+
+  std::vector<GltfGeometry::Target> targets(
+      const std::vector<std::optional<std::uint32_t>>& accessors) {
+    std::vector<GltfGeometry::Target> read;
+    for (std::size_t t = 0; t < accessors.size() && !errors_; ++t) {
+      const std::optional<std::uint32_t> target = accessors[t];
+      if (!target || !has_count(*target) || !takes_deltas(*target)) continue;
+      std::vector<GltfDelta> deltas = values_.deltas(*target);
+      if (!deltas.empty()) read.push_back({t, std::move(deltas)});
+    }
+    return read;
   }
 
   void read_attribute(const GltfAttribute& attribute, GltfGeometry& geometry) {
@@ -185,14 +194,14 @@ GltfGeometry read_gltf_geometry(const GltfPrimitive& primitive, std::size_t num_
   return GeometryReader(primitive, values, errors).read(num_joints);
 }
 
-void morph(const GltfGeometry& geometry, std::span<const double> weights,
-           std::vector<double>& positions) {
-  positions.assign(geometry.base.begin(), geometry.base.end());
-  for (const auto& [number, deltas] : geometry.targets) {
+void morph(std::span<const float> base, std::span<const GltfGeometry::Target> targets,
+           std::span<const double> weights, std::vector<double>& out) {
+  out.assign(base.begin(), base.end());
+  for (const auto& [number, deltas] : targets) {
     const double weight = weights[number];
     if (weight == 0) continue;
     for (const GltfDelta& delta : deltas) {
-      double* const p = &positions[3 * std::size_t{delta.vertex}];
+      double* const p = &out[3 * std::size_t{delta.vertex}];
       for (std::size_t c = 0; c < 3; ++c) p[c] += weight * delta.move[c];
     }
   }

@@ -24,8 +24,9 @@ struct GltfGeometry {
     std::vector<GltfDelta> deltas;
   };
 
-  std::vector<float> base;      // xyz per vertex
-  std::vector<Target> targets;  // only those that move a vertex
+  std::vector<float> base;             // xyz per vertex
+  std::vector<Target> targets;         // only those that move a vertex
+  std::vector<Target> normal_targets;  // only those that turn a normal
   // The influences of vertex v, at least one, are influences[first_influence[v]] up to, but not
   // including, influences[first_influence[v + 1]]. Both are empty without a skin.
   std::vector<GltfInfluence> influences;
@@ -47,10 +48,10 @@ struct GltfGeometry {
 GltfGeometry read_gltf_geometry(const GltfPrimitive& primitive, std::size_t num_joints,
                                 GltfValues& values, GltfErrors& errors);
 
-// Sets positions, 3 values per vertex, to base plus weighted targets, before nodes or joints
-// are applied. weights: [target of the mesh].
-void morph(const GltfGeometry& geometry, std::span<const double> weights,
-           std::vector<double>& positions);
+// Sets positions, or other values of vertices in threes, to base plus weighted targets, before
+// nodes or joints are applied. weights: [target of the mesh].
+void morph(std::span<const float> base, std::span<const GltfGeometry::Target> targets,
+           std::span<const double> weights, std::vector<double>& out);
 
 // Maps positions to the scene, by the map of a node or the weighted maps of joints. out: 3
 // values per vertex.

@@ -113,7 +113,8 @@ class GltfSource : public FrameSource {
       const GltfGeometry& geometry = model_.geometries[instance.geometry];
       const auto out = xyz.subspan(3 * static_cast<std::size_t>(instance.first_vertex),
                                    geometry.base.size());
-      morph(geometry, target_weights(model_, instance.node, pose), positions_);
+      morph(geometry.base, geometry.targets, target_weights(model_, instance.node, pose),
+            positions_);
       if (instance.skin) {
         const auto [maps, is_new] = joints.try_emplace(*instance.skin);
         if (is_new) maps->second = joint_maps(model_, *instance.skin, pose);

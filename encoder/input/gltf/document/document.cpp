@@ -129,6 +129,8 @@ GltfPrimitive read_primitive(const GltfValue& value, const Counts& counts) {
   for (std::size_t i = 0; i < targets.size(); ++i) {
     primitive.targets.push_back(
         targets[i]["POSITION"].index_if_any(counts.accessors, "accessors"));
+    primitive.normal_targets.push_back(
+        targets[i]["NORMAL"].index_if_any(counts.accessors, "accessors"));
   }
   return primitive;
 }

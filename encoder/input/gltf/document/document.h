@@ -36,8 +36,9 @@ struct GltfPrimitive {
   std::optional<std::uint32_t> indices;  // accessors, here and below
   std::uint32_t positions = 0;
   bool is_compressed = false;  // compressed by an extension; may be unreadable without it
-  std::vector<std::optional<std::uint32_t>>
-      targets;                        // none: the target does not move positions
+  // None: the target does not move positions, or not turn normals.
+  std::vector<std::optional<std::uint32_t>> targets;
+  std::vector<std::optional<std::uint32_t>> normal_targets;
   std::vector<std::uint32_t> joints;  // as many as weights
   std::vector<std::uint32_t> weights;
   std::vector<GltfAttribute> attributes;  // texture coordinates, normals, tangents, colours
