@@ -108,6 +108,12 @@ class Modules(unittest.TestCase):
     def test_byte_ranges(self):
         self.run_in_node("byte_ranges_test.mjs")
 
+    def test_http_source(self):
+        self.run_in_node("http_source_test.mjs")
+
+    def test_wasm_decoder(self):
+        self.run_in_node("wasm_decoder_test.mjs")
+
 
 class Types(InFolder):
     """The TypeScript types."""

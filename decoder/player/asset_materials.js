@@ -56,8 +56,12 @@ async function pictureOf(blob) {
   const { width, height } = picture;
   const scale = kMostPixels / Math.max(width, height);
   if (scale >= 1) return picture;
-  return createImageBitmap(picture, { ...options, resizeWidth: Math.ceil(scale * width),
-    resizeHeight: Math.ceil(scale * height), resizeQuality: "medium" });
+  try {
+    return await createImageBitmap(picture, { ...options, resizeWidth: Math.ceil(scale * width),
+      resizeHeight: Math.ceil(scale * height), resizeQuality: "medium" });
+  } finally {
+    picture.close();
+  }
 }
 
 /** Materials for Viewer.setMaterials(), and what is wrong with them: { materials, problems }.

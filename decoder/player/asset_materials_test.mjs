@@ -10,7 +10,7 @@ globalThis.createImageBitmap = async (source) => {
   if (source.width) return { ...source, isScaled: true };
   if (source.size === 0) throw new Error("no picture");
   return { width: source.type === "image/large" ? 16384 : 4, height: 4,
-    bytes: new Uint8Array(await source.arrayBuffer()) };
+    bytes: new Uint8Array(await source.arrayBuffer()), close() { this.isClosed = true; } };
 };
 
 function glb(json, binary = kPicture) {

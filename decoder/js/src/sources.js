@@ -1,6 +1,7 @@
 // Where the bytes of a stream come from. Each source has its size after open(), and puts bytes
 // into `ranges` with load(start, end, signal), which waits until they are there.
 import { ByteRanges } from "./byte_ranges.js";
+import { RlpcError } from "./error.js";
 import { HttpSource } from "./http_source.js";
 
 class BytesSource {
@@ -29,8 +30,12 @@ class BlobSource {
   async load(start, end) {
     const gap = this.ranges.gap(start, end);
     if (!gap) return;
-    const bytes = await this.blob.slice(gap[0], end).arrayBuffer();
-    this.ranges.add(gap[0], new Uint8Array(bytes));
+    try {
+      const bytes = await this.blob.slice(gap[0], end).arrayBuffer();
+      this.ranges.add(gap[0], new Uint8Array(bytes));
+    } catch (error) { // a file that has changed or gone
+      throw new RlpcError(`the file cannot be read: ${error.message}`, { kind: "source" });
+    }
   }
 }
 

@@ -121,7 +121,10 @@ async function finalMaterial(geometry, parser, number) {
 
 export function dispose(material, withTextures) {
   if (withTextures) {
-    for (const value of Object.values(material)) if (value?.isTexture) value.dispose();
+    for (const texture of Object.values(material).filter((value) => value?.isTexture)) {
+      texture.dispose();
+      texture.image?.close?.(); // an ImageBitmap
+    }
   }
   material.dispose();
 }

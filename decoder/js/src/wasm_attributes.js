@@ -57,7 +57,7 @@ export class WasmAttributes {
   placesOf(set, count) {
     const address = this.ask("stream_drawn_values", set) >>> 0;
     return address === 0 ? undefined
-      : new Uint32Array(this.stream.exports.memory.buffer, address, count);
+      : new Uint32Array(this.stream.decoder.exports.memory.buffer, address, count);
   }
 
   /** Of the frame that was decoded last, at the drawn vertices. */
@@ -82,6 +82,6 @@ export class WasmAttributes {
   }
 
   ask(name, ...args) {
-    return this.stream.exports[name](this.stream.stream, ...args);
+    return this.stream.ask(name, ...args);
   }
 }

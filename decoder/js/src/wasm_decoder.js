@@ -67,8 +67,7 @@ function outOfMemory() {
 class WasmStream {
   constructor(decoder, size, { maxMemory, coarseLayers, verifyHashes, skipDamagedUnits }) {
     this.decoder = decoder;
-    this.exports = decoder.exports;
-    this.stream = this.exports.stream_new(size, maxMemory, coarseLayers, verifyHashes,
+    this.stream = this.call("stream_new", size, maxMemory, coarseLayers, verifyHashes,
       skipDamagedUnits);
   }
 
@@ -85,13 +84,13 @@ class WasmStream {
    * is at its end. */
   describe() {
     this.decoder.missing = undefined;
-    const header = JSON.parse(this.text(this.exports.stream_describe(this.stream)));
+    const header = JSON.parse(this.text(this.ask("stream_describe")));
     if (this.decoder.missing) throw this.decoder.missing;
-    header.metadata = this.text(this.exports.stream_metadata(this.stream));
+    header.metadata = this.text(this.ask("stream_metadata"));
     header.clips = Array.from({ length: header.num_clips }, (_, i) => ({
-      name: this.text(this.exports.stream_clip_name(this.stream, i)),
-      firstFrame: this.exports.stream_clip_first_frame(this.stream, i),
-      frames: this.exports.stream_clip_num_frames(this.stream, i),
+      name: this.text(this.ask("stream_clip_name", i)),
+      firstFrame: this.ask("stream_clip_first_frame", i),
+      frames: this.ask("stream_clip_num_frames", i),
     }));
     return header;
   }
@@ -99,7 +98,7 @@ class WasmStream {
   /** Offsets where GOFs and skinned models begin, and the end of the last. */
   landmarks() {
     this.check("stream_find_index");
-    const count = this.exports.stream_num_landmarks(this.stream);
+    const count = this.ask("stream_num_landmarks");
     return this.copy(Float64Array, "stream_landmarks", count);
   }
 
@@ -113,7 +112,7 @@ class WasmStream {
   }
 
   edges() {
-    const count = this.exports.stream_num_edges(this.stream);
+    const count = this.ask("stream_num_edges");
     return this.copy(Uint32Array, "stream_edges", 2 * count);
   }
 
@@ -140,16 +139,16 @@ class WasmStream {
   }
 
   crc() {
-    return this.exports.stream_frame_crc(this.stream) >>> 0;
+    return this.ask("stream_frame_crc") >>> 0;
   }
 
   comparedFrames() {
-    return this.exports.stream_compared_frames(this.stream);
+    return this.ask("stream_compared_frames");
   }
 
   /** The error of a frame that was decoded but does not fit its hash. */
   hashError() {
-    return this.exports.stream_hash_differs(this.stream) ? this.error() : undefined;
+    return this.ask("stream_hash_differs") ? this.error() : undefined;
   }
 
   copy(Type, name, length, into, ...args) {
@@ -160,38 +159,45 @@ class WasmStream {
 
   /** Until the next call of the decoder. */
   view(Type, name, length, ...args) {
-    const address = this.exports[name](this.stream, ...args) >>> 0;
-    return length > 0 ? new Type(this.exports.memory.buffer, address, length) : new Type();
+    const address = this.ask(name, ...args) >>> 0;
+    return length > 0 ? new Type(this.decoder.exports.memory.buffer, address, length) : new Type();
   }
 
   text(address) {
-    const bytes = new Uint8Array(this.exports.memory.buffer, address >>> 0);
+    const bytes = new Uint8Array(this.decoder.exports.memory.buffer, address >>> 0);
     return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
   }
 
-  /** Calls an exported function, which returns true, or knows an error. */
-  check(name, ...args) {
+  /** Calls an exported function. */
+  call(name, ...args) {
     if (this.decoder.isBroken) throw outOfMemory();
-    this.decoder.missing = undefined;
-    let done = false;
     try {
-      done = this.exports[name](this.stream, ...args);
+      return this.decoder.exports[name](...args);
     } catch (failure) {
       // The only thing that stops it on the way; its memory cannot be trusted any more.
       if (!(failure instanceof WebAssembly.RuntimeError)) throw failure;
       this.decoder.isBroken = true;
       throw outOfMemory();
     }
-    if (!done) throw this.decoder.missing ?? this.error();
+  }
+
+  /** The same of one that belongs to the stream. */
+  ask(name, ...args) {
+    return this.call(name, this.stream, ...args);
+  }
+
+  /** The same of one that returns true, or knows an error. */
+  check(name, ...args) {
+    this.decoder.missing = undefined;
+    if (!this.ask(name, ...args)) throw this.decoder.missing ?? this.error();
   }
 
   error() {
-    const { exports, stream } = this;
-    return new RlpcError(this.text(exports.stream_error_text(stream)), {
-      kind: kKinds[exports.stream_error_code(stream)],
-      rule: this.text(exports.stream_error_rule(stream)),
-      element: this.text(exports.stream_error_element(stream)),
-      bitOffset: exports.stream_error_bit(stream),
+    return new RlpcError(this.text(this.ask("stream_error_text")), {
+      kind: kKinds[this.ask("stream_error_code")],
+      rule: this.text(this.ask("stream_error_rule")),
+      element: this.text(this.ask("stream_error_element")),
+      bitOffset: this.ask("stream_error_bit"),
     });
   }
 }

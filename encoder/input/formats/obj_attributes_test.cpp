@@ -106,6 +106,11 @@ TEST(ObjAttributes, IndicesOutOfRangeAreNamed) {
   EXPECT_TRUE(mesh->attributes.sets.empty());
 }
 
+TEST(ObjAttributes, WhatIsNoFaceIsTold) {
+  EXPECT_EQ(mesh_of(kVertices + "l 1 2 3\np 1\nf 1 2 3\n").notes,
+            std::vector<std::string>{"dropped: points, lines, curves or surfaces (2)"});
+}
+
 TEST(ObjAttributes, ValuesMayFollowTheFaces) {
   const SingleMesh mesh = mesh_of(kVertices + "f 1/1 2/2 3/2\nvt 0 0\nvt 1 1\n");
   EXPECT_EQ(find(mesh, "uv0")->value_of_corner, (std::vector<std::uint32_t>{0, 1, 1}));

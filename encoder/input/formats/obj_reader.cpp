@@ -53,6 +53,7 @@ class ObjParser {
       check_or_ignore(uv_, attributes_.num_uv());
       check_or_ignore(normals_, attributes_.num_normals());
       if (!error_ && !attributes_.finish(mesh_, limit_)) fail_for_memory();
+      note_what_is_dropped();
     }
     if (error_) return *error_;
     return std::move(mesh_);
@@ -86,6 +87,12 @@ class ObjParser {
     if (kind.highest == 0) return;
     mesh_.notes.push_back(std::string("ignores each ") + kind.name +
                           " index, as the file has none of these");
+  }
+
+  void note_what_is_dropped() {
+    if (num_without_triangles_ == 0) return;
+    mesh_.notes.push_back("dropped: points, lines, curves or surfaces (" +
+                          std::to_string(num_without_triangles_) + ")");
   }
 
   void push(float value, std::vector<float>& list) {
@@ -151,6 +158,8 @@ class ObjParser {
       attributes_.set_group(words_.rest_of_words());
     } else if (keyword == "mtllib" && mesh_.material_library.empty()) {
       mesh_.material_library = words_.rest_of_words();
+    } else if (keyword == "l" || keyword == "p" || keyword == "curv" || keyword == "surf") {
+      ++num_without_triangles_;
     }
     if (!limit_.leaves_room_for(*this, 0)) fail_for_memory();
   }
@@ -244,6 +253,7 @@ class ObjParser {
   SingleMesh mesh_;
   ObjAttributes attributes_;
   std::optional<InputError> error_;
+  std::uint64_t num_without_triangles_ = 0;  // elements
   Indexed vertices_{"vertex"};
   Indexed uv_{"texture coordinate"};
   Indexed normals_{"normal"};

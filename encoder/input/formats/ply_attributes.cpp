@@ -103,7 +103,11 @@ void PlyAttributes::find_roles(const PlyHeader& header, bool with_attributes) {
       face_roles_[*i].kind = Kind::kMaterial;
       has_materials_ = true;
     }
-    if (colour_width_ > 0) continue;
+    if (colour_width_ > 0) {
+      std::vector<PlyRole> unused(element.properties.size());
+      drops_face_colours_ = claim_colours(element, Kind::kFaceColour, unused) > 0;
+      continue;
+    }
     face_colour_width_ = claim_colours(element, Kind::kFaceColour, face_roles_);
     are_bytes_ = are_all_bytes(element, Kind::kFaceColour, face_roles_);
   }
@@ -195,6 +199,9 @@ bool PlyAttributes::finish(SingleMesh& mesh, const MeshLimit& limit) {
   } else if (!colours_.empty()) {
     sets.push_back(colour_attribute(std::move(colours_), static_cast<std::uint32_t>(width),
                                     are_bytes_, std::move(colour_of_)));
+  }
+  if (drops_face_colours_) {
+    mesh.notes.emplace_back("dropped: colours of faces, beside those of vertices");
   }
   if (!normals_.empty()) {
     sets.push_back(normal_attribute(std::move(normals_), {}, mesh.xyz, mesh.triangles));

@@ -74,6 +74,7 @@ class PlyAttributes {
   std::vector<std::uint32_t> uv_of_;  // [corner]; empty: of vertices
   std::vector<std::uint32_t> colour_of_;  // likewise
   std::vector<std::uint32_t> materials_;  // [triangle]; empty: none
+  bool drops_face_colours_ = false;       // as vertices have some
   bool has_corner_uv_ = false;
   bool has_bad_uv_ = false;  // lists of another length
   bool has_materials_ = false;

@@ -111,6 +111,15 @@ TEST(PlyAttributes, FacesMayHaveTextureCoordinatesAndColours) {
                              "dropped: lists texcoord without two values for each corner"});
 }
 
+TEST(PlyAttributes, ColoursOfFacesBesideThoseOfVerticesAreTold) {
+  const std::string rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const SingleMesh mesh = text_mesh(rgb, "255 255 255", rgb, "255 0 0");
+  ASSERT_EQ(mesh.attributes.sets.size(), 1U);
+  EXPECT_EQ(mesh.attributes.sets[0].domain, AttributeDomain::kVertex);
+  EXPECT_EQ(mesh.notes,
+            std::vector<std::string>{"dropped: colours of faces, beside those of vertices"});
+}
+
 TEST(PlyAttributes, FacesMayHaveMaterials) {
   std::string text = header("ascii", "", "property int material_index\n");
   text.replace(text.find("face 1"), 6, "face 2");

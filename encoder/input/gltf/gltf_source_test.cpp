@@ -307,15 +307,17 @@ TEST_F(GltfSourceTest, ListsWhatItDrops) {
   EXPECT_EQ(source->attributes().sets.size(), 4U);  // and material, as the triangle has none
   EXPECT_TRUE(source->asset().starts_with("glTF"));
   attributes["TANGENT"] = colours;
+  attributes["_HEAT"] = colours;
   builder.json["cameras"] = Json::array({Json::object()});
   builder.json["skins"] = Json::parse(R"([{"joints": [0]}])");
   builder.json["extensions"]["KHR_lights_punctual"] = Json::object();
   builder.json["extensions"]["KHR_materials_variants"] = Json::object();
   builder.json["nodes"][0]["name"] = "Hips";
-  EXPECT_EQ(open(builder)->notes(),
-            (std::vector<std::string>{
-                "dropped: tangents, skeleton (not its motion), cameras, lights, "
-                "variants of materials"}));
+  EXPECT_EQ(
+      open(builder)->notes(),
+      (std::vector<std::string>{
+          "dropped: tangents, custom attributes, skeleton (not its motion), cameras, lights, "
+          "variants of materials"}));
 }
 
 TEST_F(GltfSourceTest, RefusesEmptyMeshes) {

@@ -32,6 +32,13 @@ GltfValue GltfValue::operator[](std::string_view member) const {
   return {found == json_->end() ? nullptr : &*found, path, errors_};
 }
 
+std::vector<std::string> GltfValue::names() const {
+  std::vector<std::string> names;
+  if (!json_ || !json_->is_object()) return names;
+  for (const auto& [name, value] : json_->items()) names.push_back(name);
+  return names;
+}
+
 GltfValue GltfValue::operator[](std::size_t i) const {
   return {&(*json_)[i], path_ + "[" + to_string(i) + "]", errors_};
 }

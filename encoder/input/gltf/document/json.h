@@ -51,6 +51,8 @@ class GltfValue {
   const std::string& path() const { return path_; }  // "accessors[3].count"
   // A member of an object; missing members, also of missing values, do not exist.
   GltfValue operator[](std::string_view member) const;
+  // Of the members of an object; none if it is not one.
+  std::vector<std::string> names() const;
   // An element of an array: i < size().
   GltfValue operator[](std::size_t i) const;
   // Elements of an array; 0 if it does not exist.
