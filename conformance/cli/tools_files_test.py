@@ -128,9 +128,14 @@ class SamePlaces(ToolsTest):
                           {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"}],
             "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
                             {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
+            "images": [{"uri": "skin.png"}], "textures": [{"source": 0}],
+            "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
             "buffers": [{"uri": "data.bin", "byteLength": 42}]}))
-        self.fails(64, "is also an input", "rlpcenc", self.path("a.gltf"), "-o", self.path("data.bin"))
-        self.assertEqual(self.path("data.bin").read_bytes(), buffer)
+        skin = b"\x89PNG\r\n\x1a\n the picture"
+        self.path("skin.png").write_bytes(skin)
+        for name, content in (("data.bin", buffer), ("skin.png", skin)):
+            self.fails(64, "is also an input", "rlpcenc", self.path("a.gltf"), "-o", self.path(name))
+            self.assertEqual(self.path(name).read_bytes(), content)
         self.ok("rlpcenc", self.path("a.gltf"), "-o", out)
 
     def test_of_the_decoder(self):

@@ -197,6 +197,42 @@ TEST_P(Threads, CountTheSameGofs) {
   }
 }
 
+// Attributes need the whole first frame, while threads parse the next GOFs for a cut.
+TEST(ThreadsOfACut, LeaveAttributesWhole) {
+  MemoryFrames source = tube_with_normals(20, 45);
+  EncoderSettings settings;
+  settings.target = {Target::kKg, 0.5};
+  settings.gof_frames = 4;
+  settings.attributes.normals = NormalChoice::kExact;
+  const StreamBytes stream = encode_to_memory(source, settings);
+  auto whole = Decoder::open(memory_source(StreamBytes(stream)), with_threads(1));
+  ASSERT_TRUE(whole);
+  const auto wanted = whole->attributes();
+  ASSERT_TRUE(wanted);
+  DecoderOptions options;
+  options.cut.max_components = 1;
+  const Outcome cut = decode(stream, options);
+  ASSERT_EQ(cut.frames.size(), 45U);
+  ASSERT_NE(cut.frames, decode(stream, {}).frames);
+  options.threads = 4;
+  for (const std::uint32_t before : {0U, 1U, 4U, 6U, 30U, 44U}) {
+    SCOPED_TRACE(before);
+    auto decoder = Decoder::open(memory_source(StreamBytes(stream)), options);
+    ASSERT_TRUE(decoder);
+    std::vector<std::int32_t> frame(3 * std::size_t{decoder->num_vertices()});
+    for (std::uint32_t f = 0; f < 45; ++f) {
+      if (f == before) {
+        const auto sets = decoder->attributes();
+        ASSERT_TRUE(sets);
+        EXPECT_EQ((*sets)[0].values, (*wanted)[0].values);
+      }
+      const auto more = decoder->next_frame(frame);
+      ASSERT_TRUE(more && *more) << f;
+      ASSERT_EQ(frame, cut.frames[f]) << f;
+    }
+  }
+}
+
 std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
   constexpr std::array<const char*, 8> kNames{
       "Baseline", "BaselineFrameHashes", "Main",   "MainFrameHashes",

@@ -42,33 +42,8 @@ class CountedSource final : public ByteSource {
   std::uint64_t& num_bytes_;
 };
 
-// With normals, which are predicted from the first frame.
-MemoryFrames tube_with_normals() {
-  MemoryFrames plain = bending_tube(6, 26);
-  FrameSource::Shape shape;
-  shape.frame_rate = plain.frame_rate();
-  shape.triangles.assign(plain.triangles().begin(), plain.triangles().end());
-  std::vector<std::vector<float>> frames(plain.num_frames());
-  for (std::uint32_t f = 0; f < plain.num_frames(); ++f) {
-    frames[f].resize(3 * std::size_t{plain.num_vertices()});
-    EXPECT_FALSE(plain.read_frame(f, frames[f]));
-  }
-  SourceAttribute& normal = shape.attributes.sets.emplace_back();
-  normal.name = "normal";
-  normal.domain = AttributeDomain::kVertex;
-  normal.kind = SourceAttribute::Kind::kNormals;
-  normal.num_components = 3;
-  for (std::uint32_t v = 0; v < plain.num_vertices(); ++v) {
-    const double turn = 1.2566 * (v % 5) + 0.1 * std::sin(3.0 * v);
-    normal.values.push_back(0.0F);
-    normal.values.push_back(static_cast<float>(std::cos(turn)));
-    normal.values.push_back(static_cast<float>(std::sin(turn)));
-  }
-  return {std::move(shape), std::move(frames)};
-}
-
 StreamBytes main_stream() {
-  MemoryFrames source = tube_with_normals();
+  MemoryFrames source = tube_with_normals(6, 26);
   EncoderSettings settings;
   settings.target = {Target::kKg, 0.5};
   settings.gof_frames = 8;
@@ -77,7 +52,7 @@ StreamBytes main_stream() {
 }
 
 StreamBytes stream_of_frames(const std::optional<FramePattern>& pattern, FrameWeights weights) {
-  MemoryFrames source = tube_with_normals();
+  MemoryFrames source = tube_with_normals(6, 26);
   EncoderSettings settings;
   settings.profile = Profile::kHigh;
   settings.kinds = KindChoice::kFrames;

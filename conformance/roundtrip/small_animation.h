@@ -65,6 +65,31 @@ inline MemoryFrames bending_tube(std::uint32_t rings, std::uint32_t num_frames) 
   return {std::move(shape), std::move(frames)};
 }
 
+// The same with normals, which are predicted from the first frame.
+inline MemoryFrames tube_with_normals(std::uint32_t rings, std::uint32_t num_frames) {
+  MemoryFrames plain = bending_tube(rings, num_frames);
+  FrameSource::Shape shape;
+  shape.frame_rate = plain.frame_rate();
+  shape.triangles.assign(plain.triangles().begin(), plain.triangles().end());
+  std::vector<std::vector<float>> frames(plain.num_frames());
+  for (std::uint32_t f = 0; f < plain.num_frames(); ++f) {
+    frames[f].resize(3 * std::size_t{plain.num_vertices()});
+    plain.read_frame(f, frames[f]);
+  }
+  SourceAttribute& normal = shape.attributes.sets.emplace_back();
+  normal.name = "normal";
+  normal.domain = AttributeDomain::kVertex;
+  normal.kind = SourceAttribute::Kind::kNormals;
+  normal.num_components = 3;
+  for (std::uint32_t v = 0; v < plain.num_vertices(); ++v) {
+    const double turn = 1.2566 * (v % 5) + 0.1 * std::sin(3.0 * v);
+    normal.values.push_back(0.0F);
+    normal.values.push_back(static_cast<float>(std::cos(turn)));
+    normal.values.push_back(static_cast<float>(std::sin(turn)));
+  }
+  return {std::move(shape), std::move(frames)};
+}
+
 // Encodes; the test fails if the stream does not conform.
 inline void require_conforming(const StreamBytes& bytes) {
   const auto source = memory_source(bytes);
