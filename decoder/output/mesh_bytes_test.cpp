@@ -52,14 +52,26 @@ TEST(MeshBytes, ObjFilesHoldAttributes) {
             "# frame_rate 30/1\nmtllib a.mtl\nvt 0 1\nvt 1 1\nvt 1 0\nvt 0.25 0.75\nvt 0 0\n"
             "v 0 0 0 0 1 0.7374\nv 1 0 0 0 0 0\nv 1 1 0 0 0 0\nv 0 1 0 1 0 0\n"
             "vn 0 0 1\nvn 0 0 1\nvn 0 0 1\nvn 0 0 1\n"
-            "g part_0\nusemtl material_3\nf 1/1/1 2/2/2 3/3/3\n"
-            "usemtl material_1\nf 1/4/1 3/3/3 4/5/4\n");
+            "g part_0\nusemtl material_1\nf 1/4/1 3/3/3 4/5/4\n"
+            "usemtl material_3\nf 1/1/1 2/2/2 3/3/3\n");
   const auto files = ObjMaterials(options).files("a");
   ASSERT_EQ(files.size(), 1U);
   EXPECT_EQ(files[0].name, "a.mtl");
   EXPECT_EQ(files[0].bytes,
             "# materials of rlpcdec\nnewmtl material_1\nKd 0.8 0.8 0.8\n"
             "newmtl material_3\nKd 0.8 0.8 0.8\n");
+}
+
+TEST(MeshBytes, ObjFilesNameEachPartOnce) {
+  SinkOptions options = square();
+  options.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 2, 3}, {0, 1, 3}};
+  options.attributes = {options.attributes[3], options.attributes[4]};
+  options.attributes[0].values = {1, 0, 1, 1};
+  options.attributes[1].values = {1, 0, 0, 1};
+  const std::string obj = make_mesh_bytes(SinkFormat::kObj, options, "")->frame(kPositions);
+  EXPECT_EQ(obj.substr(obj.find("g ")),
+            "g part_0\nusemtl material_0\nf 1 3 4\nusemtl material_1\nf 2 3 4\n"
+            "g part_1\nf 1 2 3\nf 1 2 4\n");
 }
 
 TEST(MeshBytes, PlyFilesSplitVertices) {

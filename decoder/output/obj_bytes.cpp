@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "common/io/float_position.h"
 
@@ -55,22 +56,32 @@ std::optional<std::size_t> ObjBytes::add_uv(const ObjTexture& texture) {
   return uv_lists_.size() - 1;
 }
 
+std::vector<std::size_t> ObjBytes::triangles_by_part() const {
+  std::vector<std::size_t> order(options_.triangles.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (const AttributeSet* const set : {attributes_.material, attributes_.part}) {
+    if (set == nullptr) continue;
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return set->values[a] < set->values[b];
+    });
+  }
+  return order;
+}
+
 void ObjBytes::append_faces(const ObjMaterials& materials) {
-  const auto number_of = [](const AttributeSet* set, std::size_t triangle) {
-    return set->values[triangle];
-  };
-  const auto changes = [&](const AttributeSet* set, std::size_t triangle) {
-    return set != nullptr &&
-           (triangle == 0 || number_of(set, triangle) != number_of(set, triangle - 1));
-  };
   if (materials.has_one()) faces_ += "usemtl " + materials.material_name(0) + "\n";
-  for (std::size_t t = 0; t < options_.triangles.size(); ++t) {
+  std::optional<std::size_t> last;
+  const auto changes = [&](const AttributeSet* set, std::size_t triangle) {
+    return set != nullptr && (!last || set->values[triangle] != set->values[*last]);
+  };
+  for (const std::size_t t : triangles_by_part()) {
     if (changes(attributes_.part, t)) {
-      faces_ += "g " + materials.part_name(number_of(attributes_.part, t)) + "\n";
+      faces_ += "g " + materials.part_name(attributes_.part->values[t]) + "\n";
     }
     if (changes(attributes_.material, t)) {
-      faces_ += "usemtl " + materials.material_name(number_of(attributes_.material, t)) + "\n";
+      faces_ += "usemtl " + materials.material_name(attributes_.material->values[t]) + "\n";
     }
+    last = t;
     const UvList* const uv = uv_of(materials, t);
     faces_ += 'f';
     for (std::size_t k = 0; k < 3; ++k) {

@@ -30,6 +30,9 @@ class ObjBytes : public MeshBytes {
   const UvList* uv_of(const ObjMaterials& materials, std::size_t triangle);
   // The index of their list.
   std::optional<std::size_t> add_uv(const ObjTexture& texture);
+  // Each part at once, and within it each material: importers make an object of every `g` line
+  // and a draw call of every `usemtl` line.
+  std::vector<std::size_t> triangles_by_part() const;
   void append_faces(const ObjMaterials& materials);
   void append_vertices();
   void append_normals();
