@@ -161,8 +161,10 @@ class Decoder(InScene):
             await RlpcDecoder.open('walk.rlpc', { worker: () => new Worker('nothing.js') });""")
         self.assertEqual((error["isOurs"], error["kind"]), (True, "source"))
         self.assertIn("worker", error["message"])
-        error = self.error_of("await RlpcDecoder.open('walk.rlpc', { wasm: 'nothing.wasm' });")
-        self.assertEqual((error["isOurs"], error["kind"]), (True, "network"))
+        for name, words in (("nothing.wasm", "404"), ("scene.html", "sends a page")):
+            error = self.error_of(f"await RlpcDecoder.open('walk.rlpc', {{ wasm: '{name}' }});")
+            self.assertEqual((error["isOurs"], error["kind"]), (True, "network"))
+            self.assertIn(words, error["message"])
 
     def test_a_limit_on_what_is_loaded_whole(self):
         self.server.ranges = False

@@ -13,6 +13,10 @@ async function compile(url) {
     throw new RlpcError(`${url}: the server answers ${response.status}`, { kind: "network" });
   }
   const type = response.headers.get("content-type") ?? "";
+  if (type.startsWith("text/html")) { // servers of development send one instead of an error
+    throw new RlpcError(`${url}: the server sends a page instead of the WebAssembly module; ` +
+      'with Vite, set optimizeDeps: { exclude: ["rlpc"] }', { kind: "network" });
+  }
   return type.startsWith("application/wasm")
     ? WebAssembly.compileStreaming(response)
     : WebAssembly.compile(await response.arrayBuffer());
