@@ -127,10 +127,11 @@ std::vector<std::string> left_out_remark(SinkFormat format, const SinkOptions& o
     names += printable({set.header.name.begin(), set.header.name.end()});
   }
   if (names.empty()) return {};
-  const char* const hold = format == SinkFormat::kObj
-                               ? "OBJ holds the UVs of images, colours of vertices, normals, "
-                                 "materials and parts"
-                               : "PLY holds uv0, colour0 and normals";
+  const char* const hold =
+      format == SinkFormat::kObj
+          ? "OBJ holds the UVs that textures use, vertex colours, normals, "
+            "materials and parts"
+          : "PLY holds uv0, colour0 and normals";
   return {"left out: " + names + " (" + hold + ")"};
 }
 

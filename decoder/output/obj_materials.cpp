@@ -180,7 +180,7 @@ std::string ObjMaterials::mtl_of(std::uint32_t number, Images& images) const {
   const GltfJson* const pbr = member(material, "pbrMetallicRoughness");
   const GltfJson* const base = member(pbr, "baseColorFactor");
   const bool has_base = base != nullptr && base->is_array() && base->size() == 4;
-  // Alpha has no meaning in others.
+  // Opaque materials ignore alpha.
   const GltfJson* const mode = member(material, "alphaMode");
   const bool has_alpha = mode != nullptr && (*mode == "BLEND" || *mode == "MASK");
   if (has_base) {

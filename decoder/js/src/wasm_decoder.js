@@ -168,7 +168,7 @@ class WasmStream {
     return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
   }
 
-  /** Calls an exported function. */
+  /** Calls an export of the module. */
   call(name, ...args) {
     if (this.decoder.isBroken) throw outOfMemory();
     try {
@@ -181,12 +181,12 @@ class WasmStream {
     }
   }
 
-  /** The same of one that belongs to the stream. */
+  /** Calls an export with the stream as its first argument. */
   ask(name, ...args) {
     return this.call(name, this.stream, ...args);
   }
 
-  /** The same of one that returns true, or knows an error. */
+  /** The same, for an export that returns true or leaves an error. */
   check(name, ...args) {
     this.decoder.missing = undefined;
     if (!this.ask(name, ...args)) throw this.decoder.missing ?? this.error();

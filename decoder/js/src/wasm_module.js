@@ -13,7 +13,7 @@ async function compile(url) {
     throw new RlpcError(`${url}: the server answers ${response.status}`, { kind: "network" });
   }
   const type = response.headers.get("content-type") ?? "";
-  if (type.startsWith("text/html")) { // servers of development send one instead of an error
+  if (type.startsWith("text/html")) { // development servers send one instead of an error
     throw new RlpcError(`${url}: the server sends a page instead of the WebAssembly module; ` +
       'with Vite, set optimizeDeps: { exclude: ["rlpc"] }', { kind: "network" });
   }
