@@ -191,9 +191,11 @@ class AttributeCollector {
       all.rest_of_corner.insert(all.rest_of_corner.end(), t.begin(), t.end());
     }
     all.first_normals = posed_normals(model_, first_);
+    PosedModel posed(model_, first_);
     for_flat_instances([&](std::size_t i, std::size_t first) {
-      append_face_normals(i, first, posed_positions(model_, model_.instances[i], first_),
-                          all.first_normals);
+      std::vector<float> xyz(geometry_of(model_.instances[i]).base.size());
+      posed.positions(model_.instances[i], xyz);
+      append_face_normals(i, first, xyz, all.first_normals);
     });
   }
 

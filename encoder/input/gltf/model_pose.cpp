@@ -64,18 +64,14 @@ std::vector<Affine> joint_maps(const GltfModel& model, std::uint32_t skin,
   return joints;
 }
 
-std::vector<float> posed_positions(const GltfModel& model, const GltfModel::Instance& instance,
-                                   const GltfPose& pose) {
-  const GltfGeometry& geometry = model.geometries[instance.geometry];
-  std::vector<double> positions;
-  morph(geometry.base, geometry.targets, target_weights(model, instance.node, pose), positions);
-  std::vector<float> placed(geometry.base.size());
-  if (instance.skin) {
-    place_by_joints(geometry, positions, joint_maps(model, *instance.skin, pose), placed);
-  } else {
-    place(positions, pose.to_scene[instance.node], placed);
-  }
-  return placed;
+void PosedModel::positions(const GltfModel::Instance& instance, std::span<float> out) {
+  const GltfGeometry& geometry = model_.geometries[instance.geometry];
+  morph(geometry.base, geometry.targets, target_weights(model_, instance.node, pose_),
+        morphed_);
+  if (!instance.skin) return place(morphed_, pose_.to_scene[instance.node], out);
+  const auto [maps, is_new] = joints_.try_emplace(*instance.skin);
+  if (is_new) maps->second = joint_maps(model_, *instance.skin, pose_);
+  place_by_joints(geometry, morphed_, maps->second, out);
 }
 
 std::vector<float> posed_normals(const GltfModel& model, const GltfPose& pose) {

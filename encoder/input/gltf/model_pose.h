@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <span>
 #include <vector>
 
 #include "encoder/input/gltf/model.h"
@@ -16,9 +18,20 @@ const std::vector<double>& target_weights(const GltfModel& model, std::uint32_t 
 std::vector<Affine> joint_maps(const GltfModel& model, std::uint32_t skin,
                                const GltfPose& pose);
 
-// xyz of the vertices of an instance.
-std::vector<float> posed_positions(const GltfModel& model, const GltfModel::Instance& instance,
-                                   const GltfPose& pose);
+// Computes positions of instances in a pose. Keeps references to both.
+class PosedModel {
+ public:
+  PosedModel(const GltfModel& model, const GltfPose& pose) : model_(model), pose_(pose) {}
+
+  // out: xyz of the vertices of the instance.
+  void positions(const GltfModel::Instance& instance, std::span<float> out);
+
+ private:
+  const GltfModel& model_;
+  const GltfPose& pose_;
+  std::map<std::uint32_t, std::vector<Affine>> joints_;  // by skin
+  std::vector<double> morphed_;
+};
 
 // The normals of all vertices, in the order of instances, as viewers make them in a pose: those
 // of skins by the linear part of the weighted joints, others by the inverse transpose of their

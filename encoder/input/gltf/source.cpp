@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 #include <cstdint>
-#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -108,20 +107,12 @@ class GltfSource : public FrameSource {
     const GltfClip* const clip = model_.clips.empty() ? nullptr : &model_.clips[number];
     const double time = clip ? clip->time_of(frame - first_frame_[number], frame_rate()) : 0.0;
     const GltfPose pose = pose_of(model_.nodes, model_.scene, clip, time);
-    std::map<std::uint32_t, std::vector<Affine>> joints;  // by skin
+    PosedModel posed(model_, pose);
     for (const GltfModel::Instance& instance : model_.instances) {
       const GltfGeometry& geometry = model_.geometries[instance.geometry];
       const auto out = xyz.subspan(3 * static_cast<std::size_t>(instance.first_vertex),
                                    geometry.base.size());
-      morph(geometry.base, geometry.targets, target_weights(model_, instance.node, pose),
-            positions_);
-      if (instance.skin) {
-        const auto [maps, is_new] = joints.try_emplace(*instance.skin);
-        if (is_new) maps->second = joint_maps(model_, *instance.skin, pose);
-        place_by_joints(geometry, positions_, maps->second, out);
-      } else {
-        place(positions_, pose.to_scene[instance.node], out);
-      }
+      posed.positions(instance, out);
     }
     return check_finite(path_, frame, xyz);
   }
@@ -132,7 +123,6 @@ class GltfSource : public FrameSource {
   std::string path_;
   GltfModel model_;
   std::vector<std::uint32_t> first_frame_;  // [clip], then the total number of frames
-  std::vector<double> positions_;
 };
 
 }  // namespace
