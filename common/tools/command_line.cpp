@@ -169,6 +169,38 @@ std::string surplus_text(const CLI::App& app, const std::vector<std::string>& wo
          (has_points ? "; put patterns in quotes, as in 'walk_*.obj'" : "");
 }
 
+// Whether a word is the value of an option whose value may be missing: numbers are, right or
+// wrong, and whatever else the option accepts.
+bool is_value_of(CLI::Option& option, std::string word) {
+  if (!word.empty() && word[0] >= '0' && word[0] <= '9') return true;
+  const CLI::Validator* const check = option.get_validator(0);
+  return check != nullptr && (*check)(word).empty();
+}
+
+// The command line with options that have no value, though they may have one, at its end, where
+// no argument follows that CLI11 would take for the value.
+std::vector<std::string> without_taken_arguments(CLI::App& app,
+                                                 std::vector<std::string> words) {
+  std::vector<std::string> moved;
+  std::vector<std::string> kept;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--") {
+      kept.insert(kept.end(), moved.begin(), moved.end());
+      moved.assign(words.begin() + static_cast<std::ptrdiff_t>(i), words.end());
+      break;
+    }
+    CLI::Option* const option =
+        words[i].starts_with("--") ? app.get_option_no_throw(words[i]) : nullptr;
+    const bool may_lack_value = option != nullptr && option->get_items_expected_min() == 0 &&
+                                option->get_items_expected_max() == 1;
+    const bool has_value =
+        i + 1 < words.size() && may_lack_value && is_value_of(*option, words[i + 1]);
+    (may_lack_value && !has_value ? moved : kept).push_back(std::move(words[i]));
+  }
+  kept.insert(kept.end(), moved.begin(), moved.end());
+  return kept;
+}
+
 }  // namespace
 
 void add_help(CLI::App& app, HelpText text, const std::string& version) {
@@ -180,8 +212,11 @@ void add_help(CLI::App& app, HelpText text, const std::string& version) {
 }
 
 std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> words =
+      without_taken_arguments(app, std::vector<std::string>(argv + 1, argv + argc));
+  std::reverse(words.begin(), words.end());  // as App::parse() wants them
   try {
-    app.parse(argc, argv);
+    app.parse(std::move(words));
   } catch (const CLI::ExtrasError&) {
     print_message(app.get_name(), surplus_text(app, app.remaining()));
     std::cerr << "Run with --help for more information.\n";

@@ -23,6 +23,10 @@ struct Program {
         ->check(CLI::Range(1, 9))
         ->option_text("N")
         ->group("Rare");
+    app.add_option("--level", level, "A level, or the usual one")
+        ->expected(0, 1)
+        ->check(CLI::IsMember({"low", "7"}))
+        ->group("Rare");
     add_help(app, {"IN [OPTIONS]", {"Main"}, "Examples\n  program x", "Details"}, "1.2.3");
   }
 
@@ -45,9 +49,31 @@ struct Program {
   std::string out;
   std::string points;
   int number = 0;
+  std::string level = "usual";
   std::string shown;
   std::string said;
 };
+
+TEST(CommandLine, OptionsWithoutTheirValueDoNotTakeAnArgument) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--level", "a.obj", "--points", "p"},
+        {"--points", "p", "--level", "a.obj"},
+        {"a.obj", "--points", "p", "--level"},
+        {"--level", "--points", "p", "--", "a.obj"}}) {
+    Program p;
+    EXPECT_EQ(p.run(words), 1000) << p.said;
+    EXPECT_EQ(p.in, "a.obj");
+    EXPECT_EQ(p.points, "p");
+    EXPECT_NE(p.level, "usual");
+  }
+  for (const char* value : {"low", "7"}) {
+    Program p;
+    EXPECT_EQ(p.run({"--level", value, "a.obj"}), 1000) << p.said;
+    EXPECT_EQ(p.in, "a.obj");
+    EXPECT_EQ(p.level, value);
+  }
+  EXPECT_EQ(Program().run({"--level", "9", "a.obj"}), 64);  // a wrong number, not a second file
+}
 
 TEST(CommandLine, HelpHasTheMainGroupsInColumns) {
   Program p;

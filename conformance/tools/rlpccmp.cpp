@@ -143,11 +143,13 @@ void add_options(CLI::App& app, Options& o) {
          "If A is a glTF file: name, index from 0, or `all`; may be repeated (default: first)")
       ->option_text("NAME")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group(more);
   app.add_option("--animation-b", o.b.animations, "The same for B")
       ->option_text("NAME")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group(more);
   app.add_option("--axes-a,--axes", o.axes, "As rlpcenc --axes, for A")

@@ -133,9 +133,9 @@ std::optional<int> parse_bits(const std::string& text) {
 
 const CLI::Validator kBits(
     [](const std::string& word) {
-      return parse_bits(word) ? ""
-                              : "expected nothing, or a number of bits from 2 to 24, found `" +
-                                    word + "`; give INPUT before --lossless";
+      return parse_bits(word)
+                 ? ""
+                 : "expected nothing, or a number of bits from 2 to 24, found `" + word + "`";
     },
     "");
 
@@ -159,6 +159,7 @@ void add_input_options(CLI::App& app, EncodeCommandLine& line) {
                  "glTF: name, index from 0, or `all`; may be repeated (default: first)")
       ->option_text("NAME")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group(kInput);
   add_off_switch(app, "--no-weld", line.options.input.weld,
@@ -272,6 +273,7 @@ void add_more_options(CLI::App& app, EncodeCommandLine& line, const OutputOption
                  "(default: the animations of glTF)")
       ->option_text("NAME:A-B")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group(kMore);
   app.add_option(
