@@ -45,6 +45,7 @@ class Help(unittest.TestCase):
                                    ("scripts/fuzz", "--minutes", "0"),
                                    ("scripts/determinism", "--frames", "-1"),
                                    ("scripts/worst_case", "--kind", "nothing"),
+                                   ("scripts/large", "tree", "mesh"),
                                    ("scripts/compare_gltf", "--settings", "best", "a.glb"),
                                    ("scripts/worst_case", "4", "1"),
                                    ("conformance/rlpccov/rlpccov", "streams", "--jobs", "0"),

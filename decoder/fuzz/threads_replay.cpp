@@ -1,0 +1,138 @@
+// Decodes streams with three decoders at a time, each with three threads that prefetch: one
+// forwards, one to random frames, one that announces random frames and keeps GOFs. All must
+// return the frames, and end with the error, of a decoder with a single thread. What the preset
+// `tsan` runs on all conformance streams; under another preset it compares results only.
+//
+//   threads_replay FILE...      exit code 1 where a decoder differs; deterministic requests
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <random>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "decoder/rlpc_decoder.h"
+
+namespace {
+
+using Bytes = rlpc::Vector<std::uint8_t>;
+using Frame = std::vector<std::int32_t>;
+
+constexpr std::uint32_t kThreads = 3;
+constexpr int kRandomFrames = 40;
+constexpr std::uint64_t kCachedBytes = 1 << 22;
+// Streams at the limits of a level announce more than a test can hold.
+constexpr std::uint64_t kMaxMemoryBytes = 1ULL << 30;
+
+struct Decoded {
+  std::vector<Frame> frames;
+  std::string error;  // empty: the stream is complete
+
+  bool operator==(const Decoded&) const = default;
+};
+
+std::string text_of(const rlpc::Error& error) {
+  return std::string(error.rule) + " " + error.element + " at bit " +
+         std::to_string(error.bit_pos);
+}
+
+Bytes bytes_of(const char* path) {
+  Bytes bytes;
+  std::FILE* const file = std::fopen(path, "rb");
+  if (file == nullptr) {
+    std::perror(path);
+    std::exit(1);
+  }
+  for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) {
+    bytes.push_back(static_cast<std::uint8_t>(c));
+  }
+  std::fclose(file);
+  return bytes;
+}
+
+rlpc::DecoderOptions options_for(std::uint32_t threads, std::uint64_t cached_bytes) {
+  rlpc::DecoderOptions options;
+  options.threads = threads;
+  options.max_cached_bytes = cached_bytes;
+  options.limits.max_memory_bytes = kMaxMemoryBytes;
+  return options;
+}
+
+Decoded decode(const Bytes& stream, std::uint32_t threads) {
+  Decoded decoded;
+  auto decoder =
+      rlpc::Decoder::open(rlpc::memory_source(Bytes(stream)), options_for(threads, 0));
+  if (!decoder) {
+    decoded.error = text_of(decoder.error());
+    return decoded;
+  }
+  Frame frame(3 * std::size_t{decoder->num_vertices()});
+  for (;;) {
+    const auto more = decoder->next_frame(frame);
+    if (!more) decoded.error = text_of(more.error());
+    if (!more || !*more) return decoded;
+    decoded.frames.push_back(frame);
+  }
+}
+
+// Whether random frames equal those of `whole`. Frames behind damage may fail; a frame that
+// comes must be right.
+bool random_frames_agree(const Bytes& stream, const Decoded& whole, std::uint64_t cached_bytes,
+                         unsigned seed) {
+  auto decoder = rlpc::Decoder::open(rlpc::memory_source(Bytes(stream)),
+                                     options_for(kThreads, cached_bytes));
+  if (!decoder || whole.frames.empty()) return true;
+  Frame frame(3 * std::size_t{decoder->num_vertices()});
+  std::minstd_rand numbers(seed);
+  for (int i = 0; i < kRandomFrames; ++i) {
+    const auto wanted = static_cast<std::uint32_t>(numbers() % whole.frames.size());
+    if (cached_bytes > 0) {
+      const auto announced = static_cast<std::uint32_t>(numbers() % whole.frames.size());
+      static_cast<void>(decoder->prefetch(announced));
+    }
+    const auto found = decoder->frame(wanted, frame);
+    if (found ? frame != whole.frames[wanted] : whole.error.empty()) return false;
+  }
+  return true;
+}
+
+// The name of the first decoder that differs from `whole`; none: all agree.
+std::optional<std::string> differing_decoder(const Bytes& stream, const Decoded& whole) {
+  bool forwards = false;
+  bool random = false;
+  bool kept = false;
+  std::thread first([&] { forwards = decode(stream, kThreads) == whole; });
+  std::thread second([&] { random = random_frames_agree(stream, whole, 0, 1); });
+  std::thread third([&] { kept = random_frames_agree(stream, whole, kCachedBytes, 2); });
+  first.join();
+  second.join();
+  third.join();
+  if (!forwards) return "forwards";
+  if (!random) return "to random frames";
+  if (!kept) return "to random frames, with GOFs kept";
+  return std::nullopt;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int differing = 0;
+  std::size_t frames = 0;
+  for (int i = 1; i < argc; ++i) {
+    const Bytes stream = bytes_of(argv[i]);
+    const Decoded whole = decode(stream, 1);
+    frames += whole.frames.size();
+    if (const auto name = differing_decoder(stream, whole)) {
+      std::printf("%s: decoding %s differs\n", argv[i], name->c_str());
+      ++differing;
+    }
+  }
+  std::printf("%d files, %zu frames, %d differ\n", argc - 1, frames, differing);
+  return argc > 1 && frames > 0 && differing == 0 ? 0 : 1;
+}
