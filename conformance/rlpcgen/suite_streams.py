@@ -17,6 +17,7 @@ import suite  # noqa: E402
 
 LICENCE = "CC0-1.0"
 SUMS = "SHA256SUMS"
+SIDECAR_SUMS = "SHA256SUMS.sidecars"
 STRESS = "STRESS.json"  # digests of the stress tier
 _ID = re.compile(r"[A-Z]{2,3}-\d{4}([a-w]|x\d+[b-w]?)$")
 _SETTINGS = {"profile_idc": 0, "level_idc": 1}
@@ -195,10 +196,24 @@ def strays(folder, places):
 
 
 def sums(folder):
-    """The text of SHA256SUMS: what a release freezes. Sidecars may get more fields later."""
+    """The text of SHA256SUMS: what a release freezes. Sidecars, which may get more fields later, are
+    in SHA256SUMS.sidecars."""
     folder = pathlib.Path(folder)
     paths = sorted(folder.glob("*/*/*.rlpc")) + sorted(folder.glob("recipes*/*/*.recipe"))
     paths += [folder / name for name in (suite.INDEX, STRESS) if (folder / name).is_file()]
-    lines = [f"{hashlib.sha256(p.read_bytes()).hexdigest()}  {p.relative_to(folder).as_posix()}\n"
-             for p in paths]
-    return "".join(lines)
+    return _sums_of(folder, paths)
+
+
+def sidecars(folder):
+    return sorted(p for p in pathlib.Path(folder).glob("*/*/*.json")
+                  if p.with_suffix(".rlpc").is_file())
+
+
+def sidecar_sums(folder):
+    """The text of SHA256SUMS.sidecars."""
+    return _sums_of(pathlib.Path(folder), sidecars(folder))
+
+
+def _sums_of(folder, paths):
+    return "".join(f"{hashlib.sha256(p.read_bytes()).hexdigest()}  "
+                   f"{p.relative_to(folder).as_posix()}\n" for p in paths)

@@ -2,7 +2,8 @@
 """What is released does not change.
 
 * Every file of streams/vX.Y/SHA256SUMS has the digest that stands there, and spec/versions.md
-  calls just those versions and supplements released that have one.
+  calls just those versions and supplements released that have one. SHA256SUMS.sidecars has those of
+  all sidecars, which hold the expected output.
 * The encoder writes for streams/inputs what it wrote before: streams/inputs/encoder_digests.json
   has the digests by version of the project (CMakeLists.txt). They may change with the version, or
   with an erratum (spec/errata.md) that the new entry names. While CHANGELOG.md calls a version
@@ -47,17 +48,31 @@ def released(root):
     for sums in sorted(root.glob("streams/v*/SHA256SUMS")):
         if sums.parent.name[1:] not in stated:
             yield f"{sums.relative_to(root)}: spec/versions.md does not know this version"
-        yield from changed(sums)
+        yield from changed(sums, "; supersede the stream by a revision instead")
+        yield from changed_sidecars(sums.with_name("SHA256SUMS.sidecars"))
 
 
-def changed(sums):
+def changed_sidecars(sums):
+    if not sums.is_file():
+        yield f"{sums}: missing, but the version is released; run scripts/streams sidecars"
+        return
+    yield from changed(sums, "; what is expected of it never changes. If fields were only added, "
+                       "run scripts/streams sidecars")
+    listed = {line.split("  ", 1)[1] for line in sums.read_text(encoding="utf-8").splitlines()}
+    for path in sorted(sums.parent.glob("*/*/*.json")):
+        name = path.relative_to(sums.parent).as_posix()
+        if path.with_suffix(".rlpc").is_file() and name not in listed:
+            yield f"{path}: not in {sums.name}"
+
+
+def changed(sums, remedy):
     for line in sums.read_text(encoding="utf-8").splitlines():
         digest, name = line.split("  ", 1)
         path = sums.parent / name
         if not path.is_file():
             yield f"{path}: released, but missing"
         elif hashlib.sha256(path.read_bytes()).hexdigest() != digest:
-            yield f"{path}: changed since its release; supersede the stream by a revision instead"
+            yield f"{path}: changed since its release{remedy}"
 
 
 def encoder_digests(root, bin_folder):
@@ -157,7 +172,7 @@ def main():
     for complaint in complaints:
         print(f"stability: {complaint}", file=sys.stderr)
     streams = sum(len(p.read_text().splitlines())
-                  for p in options.root.glob("streams/v*/SHA256SUMS"))
+                  for p in options.root.glob("streams/v*/SHA256SUMS*"))
     print(f"stability: {streams} released files, {len(entries_of(options.root))} states of the "
           f"encoder, {len(complaints)} complaints")
     return int(bool(complaints))

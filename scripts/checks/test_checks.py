@@ -302,7 +302,9 @@ class Stability(TreeTest):
     DIGEST = "2c26b46b68ffc68ff99b453c1d30413413422d706483bfa0f98a5e886266e7ae"  # of "foo"
     RELEASED = {"spec/versions.md": "| 1.0 | Baseline | released 2026-11-21 |\n",
                 "streams/v1.0/SHA256SUMS": DIGEST + "  accept/A/A-0001a.rlpc\n",
-                "streams/v1.0/accept/A/A-0001a.rlpc": "foo"}
+                "streams/v1.0/SHA256SUMS.sidecars": DIGEST + "  accept/A/A-0001a.json\n",
+                "streams/v1.0/accept/A/A-0001a.rlpc": "foo",
+                "streams/v1.0/accept/A/A-0001a.json": "foo"}
     ENTRY = '{"version": "1.0.0", "erratum": %s, "digests": {}}'
 
     @staticmethod
@@ -320,6 +322,16 @@ class Stability(TreeTest):
         missing = {k: v for k, v in self.RELEASED.items() if not k.endswith(".rlpc")}
         self.assert_one(self.released, missing, "released, but missing")
 
+    def test_what_is_expected_of_released_streams_stays(self):
+        sums, sidecar = "streams/v1.0/SHA256SUMS.sidecars", "streams/v1.0/accept/A/A-0001a.json"
+        self.assert_one(self.released, {**self.RELEASED, sidecar: "fop"}, "A-0001a.json",
+                        "what is expected of it never changes")
+        missing = {k: v for k, v in self.RELEASED.items() if k != sidecar}
+        self.assert_one(self.released, missing, "A-0001a.json", "released, but missing")
+        self.assert_one(self.released, {**self.RELEASED, sums: ""}, "A-0001a.json", "not in")
+        unfrozen = {k: v for k, v in self.RELEASED.items() if k != sums}
+        self.assert_one(self.released, unfrozen, sums, "scripts/streams sidecars")
+
     def test_the_list_of_versions_is_true(self):
         said = {"spec/versions.md": self.RELEASED["spec/versions.md"]}
         self.assert_one(self.released, said, "1.0 is `released 2026-11-21`", "missing")
@@ -332,8 +344,9 @@ class Stability(TreeTest):
         tree = {**self.RELEASED, "spec/versions.md": said + row}
         self.assert_one(self.released, tree, "1.0s1 is `released 2026-11-22`", "missing")
         sums = "streams/v1.0s1/SHA256SUMS"
-        self.assert_clean(self.released, {**tree, sums: ""})
-        self.assert_one(self.released, {**self.RELEASED, sums: ""}, sums, "does not know")
+        empty = {sums: "", f"{sums}.sidecars": ""}
+        self.assert_clean(self.released, {**tree, **empty})
+        self.assert_one(self.released, {**self.RELEASED, **empty}, sums, "does not know")
 
     def test_another_state_of_the_encoder_has_a_reason(self):
         def tree(*errata, text="# Errata\n"):
