@@ -12,7 +12,7 @@ import subprocess
 import sys
 import time
 
-from judge_testing import JUDGE, JudgeTest, ROOT, Tools, main
+from judge_testing import JUDGE, JudgeTest, ROOT, Tools, add_stream, main, write_index
 
 ACCEPT = ("GOF-0001a", "GOF-0002a", "LVL-0001a")
 WITH_FRAMES, WITH_HEADER, WITHOUT_OUTPUT = "HSH-0001x1", "GOF-0001x1", "CON-0001x1"
@@ -57,6 +57,29 @@ class FakeDecoders(JudgeTest):
         self.draws("talks_on_standard_output", {}, GOOD, 0)
         self.draws("rejects_what_either_may", {}, GOOD, 0)
         self.draws("right_floats", {}, {**GOOD, "R-full": "PASS"}, 0)
+
+    def test_several_suites_are_judged_as_one(self):
+        second = self.folder / "second"
+        data = (self.suite / "accept/GOF/GOF-0002a.rlpc").read_bytes()
+        add_stream(second, "GOF-0099a", data)
+        write_index(second)
+        path = self.folder / "report.json"
+        for words in (["--suite", self.suite, second], ["--suite", self.suite, "--suite", second]):
+            code, _, errors = self.run_here("--decoder", fake("none"), *words, "--json", path,
+                                            "--jobs", "1", "--max-mem", "0")
+            self.assertEqual(code, 0, errors)
+            report = json.loads(path.read_text())
+            rows = {row["id"]: row for row in report["rows"]}
+            self.assertEqual(set(rows), {*ALL, "GOF-0099a"})
+            self.assertEqual({row["outcome"] for row in rows.values()}, {"PASS"})
+            self.assertEqual(report["facts"]["streams"], f"{len(rows)} of {len(rows)} (tier core)")
+            self.assertEqual(report["facts"]["suite"].count("specification 1.0"), 2)
+            for identity, folder in (("GOF-0099a", second), ("GOF-0002a", self.suite)):
+                self.assertIn(f"--suite {folder} --tier", rows[identity]["details"]["repeat"])
+        code, _, errors = self.run_here("--decoder", fake("none"), "--suite", self.suite,
+                                        self.suite)
+        self.assertEqual(code, 4)
+        self.assertIn("name each suite once", errors)
 
     def test_crash_is_no_rejection(self):
         crash = ("CRASH", "signal")

@@ -24,10 +24,11 @@ class SuiteError(Exception):
 
 @dataclasses.dataclass
 class Stream:
-    """A stream of a suite: its file, and its sidecar as a dictionary."""
+    """A stream of a suite: its file, its sidecar as a dictionary, and the folder of the suite."""
 
     path: pathlib.Path
     sidecar: dict
+    suite: pathlib.Path = None
 
     def __getattr__(self, name):
         if name.startswith("__") or name == "sidecar":
@@ -106,8 +107,22 @@ def load_suite(folder):
         if entry["id"] in ids:
             raise SuiteError(f"{folder / INDEX}: {entry['id']} is there twice")
         ids.add(entry["id"])
+        stream.suite = folder
         streams.append(stream)
     return Suite(folder, index["suite"], index["spec"], streams)
+
+
+def load_suites(folders):
+    """The suites in these folders; no stream may be in two of them."""
+    loaded, places = [], {}
+    for folder in folders:
+        loaded.append(load_suite(folder))
+        for stream in loaded[-1].streams:
+            if stream.id in places:
+                raise SuiteError(f"{stream.id} is in {places[stream.id]} and in {folder}; name each "
+                                 "suite once")
+            places[stream.id] = folder
+    return loaded
 
 
 def index_of(folder, name, spec):
