@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "common/io/messages.h"
 #include "decoder/report/svg_plot.h"
@@ -20,6 +21,7 @@ constexpr const char* kUsage = R"(Draws a line plot.
 PLOT.json: {"title": "", "x": {"label": "", "is_log": true}, "y": the same, "series": [
   {"name": "", "colour": "#0072b2", "points": [[x, y], ...], "line": "solid", "dashed" or "none",
    "marker": "circle", "square" or "none", "width": 2}, ...]}
+With "categories": ["a", "b", ...], an axis has these words at 1, 2, ... in place of numbers.
 
 Exit code: 0 drawn; 1 not a plot; 64 usage.
 )";
@@ -35,7 +37,8 @@ Kind kind_of(const std::string& word, std::initializer_list<const char*> names) 
 }
 
 rlpc::PlotAxis axis_of(const nlohmann::json& json) {
-  return {json.at("label"), json.at("is_log")};
+  return {json.at("label"), json.at("is_log"),
+          json.value("categories", std::vector<std::string>())};
 }
 
 rlpc::Plot plot_of(const nlohmann::json& json) {

@@ -23,7 +23,11 @@ constexpr const char* kInk = "#222222";
 constexpr const char* kFaint = "#e4e4e4";
 
 Axis axis_of(const Plot& plot, std::size_t which, double first_pixel, double last_pixel) {
-  const bool is_log = which == 0 ? plot.x.is_log : plot.y.is_log;
+  const PlotAxis& axis = which == 0 ? plot.x : plot.y;
+  if (!axis.categories.empty()) {
+    return {0.5, static_cast<double>(axis.categories.size()) + 0.5, false, first_pixel,
+            last_pixel};
+  }
   double low = HUGE_VAL;
   double high = -HUGE_VAL;
   for (const PlotSeries& series : plot.series) {
@@ -32,7 +36,7 @@ Axis axis_of(const Plot& plot, std::size_t which, double first_pixel, double las
       high = std::max(high, point[which]);
     }
   }
-  if (is_log) return {low / 1.15, high * 1.15, true, first_pixel, last_pixel};
+  if (axis.is_log) return {low / 1.15, high * 1.15, true, first_pixel, last_pixel};
   low = std::min(low, 0.0);
   const double span = high - low;
   return {low, high + (span > 0 ? 0.04 * span : 1), false, first_pixel, last_pixel};
@@ -43,20 +47,35 @@ std::string words(double x, double y, std::string_view anchor, std::string_view 
   return svg_text(x, y, anchor, text, " font-size=\"" + std::to_string(size) + "\"" + more);
 }
 
+struct Tick {
+  double value = 0;
+  std::string words;
+};
+
+std::vector<Tick> ticks_of(const PlotAxis& axis, const Axis& scale) {
+  std::vector<Tick> ticks;
+  for (const std::string& name : axis.categories) {
+    ticks.push_back({static_cast<double>(ticks.size()) + 1, name});
+  }
+  if (!ticks.empty()) return ticks;
+  for (const double value : scale.ticks(8)) ticks.push_back({value, tick_text(value)});
+  return ticks;
+}
+
 std::string grid(const Plot& plot, const Axis& x_axis, const Axis& y_axis) {
   std::string svg;
   const auto line = [&svg](const std::string& path) {
     svg += "<path d=\"" + path + "\" stroke=\"" + kFaint + "\"/>\n";
   };
-  for (const double value : x_axis.ticks(8)) {
-    const double x = x_axis.at(value);
+  for (const Tick& tick : ticks_of(plot.x, x_axis)) {
+    const double x = x_axis.at(tick.value);
     line("M" + pixel_text(x) + " " + pixel_text(kTop) + "V" + pixel_text(kBottom));
-    svg += words(x, kBottom + 20, "middle", tick_text(value), 13);
+    svg += words(x, kBottom + 20, "middle", tick.words, 13);
   }
-  for (const double value : y_axis.ticks(8)) {
-    const double y = y_axis.at(value);
+  for (const Tick& tick : ticks_of(plot.y, y_axis)) {
+    const double y = y_axis.at(tick.value);
     line("M" + pixel_text(kLeft) + " " + pixel_text(y) + "H" + pixel_text(kRight));
-    svg += words(kLeft - 8, y + 4.5, "end", tick_text(value), 13);
+    svg += words(kLeft - 8, y + 4.5, "end", tick.words, 13);
   }
   svg += "<rect x=\"" + pixel_text(kLeft) + "\" y=\"" + pixel_text(kTop) + "\" width=\"" +
          pixel_text(kRight - kLeft) + "\" height=\"" + pixel_text(kBottom - kTop) +
@@ -122,10 +141,18 @@ std::string legend(const std::vector<PlotSeries>& all) {
 
 std::string check_plot(const Plot& plot) {
   bool is_empty = true;
+  const auto is_category = [](const PlotAxis& axis, double value) {
+    return axis.categories.empty() ||
+           (value >= 1 && value <= static_cast<double>(axis.categories.size()) &&
+            value == std::floor(value));
+  };
   for (const PlotSeries& series : plot.series) {
     for (const auto& [x, y] : series.points) {
       is_empty = false;
       if (!std::isfinite(x) || !std::isfinite(y)) return series.name + ": not a finite number";
+      if (!is_category(plot.x, x) || !is_category(plot.y, y)) {
+        return series.name + ": not the number of a category";
+      }
       if ((plot.x.is_log && x <= 0) || (plot.y.is_log && y <= 0)) {
         return series.name + ": not above 0, but the axis is logarithmic";
       }

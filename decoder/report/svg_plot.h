@@ -22,6 +22,9 @@ struct PlotSeries {
 struct PlotAxis {
   std::string label;
   bool is_log = false;  // values are above 0; else, 0 is on the axis
+  // If there are any, the axis has these words at 1, 2, 3 ... in place of numbers, and is
+  // linear.
+  std::vector<std::string> categories = {};
 };
 
 struct Plot {

@@ -74,6 +74,22 @@ TEST(Plot, ReportsWhyAPlotCannotBeDrawn) {
   EXPECT_EQ(check_plot(plot), "no points");
 }
 
+TEST(Plot, CategoriesHaveWordsInPlaceOfNumbers) {
+  Plot plot{"t", {"kind", false, {"first & last", "none"}}, {"y", false, {}}, {}};
+  plot.series.push_back({"a", "red", {{1, 7}, {2, 9}}});
+  ASSERT_EQ(check_plot(plot), "");
+  const std::string svg = plot_svg(plot);
+  EXPECT_NE(svg.find(">first &amp; last</text>"), std::string::npos);
+  EXPECT_NE(svg.find(">none</text>"), std::string::npos);
+  for (const char* number : {">1</text>", ">0.5</text>", ">1.5</text>", ">2.5</text>"}) {
+    EXPECT_EQ(svg.find(number), std::string::npos) << number;
+  }
+  for (const double wrong : {0.0, 1.5, 3.0}) {
+    plot.series[0].points[0][0] = wrong;
+    EXPECT_EQ(check_plot(plot), "a: not the number of a category");
+  }
+}
+
 TEST(Plot, OnePointIsEnough) {
   Plot plot = two_points("a");
   plot.series[0].points = {{7, -2}};

@@ -22,17 +22,20 @@ class Series:
 
 @dataclasses.dataclass
 class Plot:
-    """Points are above 0 where an axis is logarithmic."""
+    """Points are above 0 where an axis is logarithmic. `categories`: words of the horizontal axis at
+    1, 2, 3 ... in place of numbers."""
     title: str
     series: list
     x_label: str
     y_label: str
     log_x: bool = True
     log_y: bool = True
+    categories: tuple = ()
 
     def json(self):
         return json.dumps({
-            "title": self.title, "x": {"label": self.x_label, "is_log": self.log_x},
+            "title": self.title, "x": {"label": self.x_label, "is_log": self.log_x,
+                                       "categories": self.categories},
             "y": {"label": self.y_label, "is_log": self.log_y},
             "series": [dataclasses.asdict(series) for series in self.series]})
 
