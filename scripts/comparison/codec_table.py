@@ -135,7 +135,7 @@ class BadCodec(Exception):
     """--codec asks for what cannot be run; the text says why."""
 
 
-OWN_COLOURS = ("#d62728", "#17becf", "#bcbd22", "#7f7f7f", "#9467bd")
+OWN_COLOURS = ("#6a3d9a", "#7fc11c", "#ff1493", "#00c8c8", "#3d2bff")  # unlike all above
 # Placeholders, and those of which one must be used.
 OWN_ENCODE = {"mesh", "points", "step", "file", "order"}, ({"file"}, {"mesh", "points"})
 OWN_DECODE = {"file", "out", "order"}, ({"file"}, {"out"})

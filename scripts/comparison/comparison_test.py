@@ -211,6 +211,24 @@ class OwnCodecs(unittest.TestCase):
                 codec_table.own_codec(*words, 0)
             self.assertIn(complaint, str(raised.exception))
 
+    def test_own_codecs_have_colours_of_their_own(self):
+        """Far apart in CIE L*a*b*, where 2.3 is just noticeable."""
+        def lab(colour):
+            channels = [int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5)]
+            r, g, b = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+                       for c in channels)
+            x, y, z = (t ** (1 / 3) if t > 0.008856 else 7.787 * t + 16 / 116 for t in (
+                (0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505,
+                0.2126 * r + 0.7152 * g + 0.0722 * b,
+                (0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089))
+            return 116 * y - 16, 500 * (x - y), 200 * (y - z)
+
+        own = codec_table.OWN_COLOURS
+        known = [codec.colour for codec in codec_table.CODECS]
+        for i, colour in enumerate(own):
+            for other in (*known, *own[:i]):
+                self.assertGreater(math.dist(lab(colour), lab(other)), 25, (colour, other))
+
     def test_results_depend_on_the_files_that_are_named(self):
         codec = codec_table.own_codec("x", f"sh {__file__} {{mesh}} {{file}}", self.DECODE, "1", 0)
         self.assertIn(str(pathlib.Path(__file__).resolve()), codec.files())
