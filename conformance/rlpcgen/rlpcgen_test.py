@@ -329,6 +329,36 @@ unit GOF""")
         self.assertLessEqual(max(map(abs, numbers)), 60)
 
 
+class Sidecars(unittest.TestCase):
+    """What is expected of released streams."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="rlpcgen-test-")
+        self.addCleanup(folder.cleanup)
+        self.version = pathlib.Path(folder.name) / "v1.0"
+        self.sidecar = self.version / "accept" / "GOF" / "GOF-0001a.json"
+        self.sidecar.parent.mkdir(parents=True)
+        self.sidecar.with_suffix(".rlpc").write_bytes(b"")
+        self.sidecar.write_text('{"id": "GOF-0001a", "sha256_int": "ab"}\n')
+        for words in (["init", "-q"], ["add", "."], ["-c", "user.name=a", "-c", "user.email=a@b",
+                                                     "commit", "-qm", "a"]):
+            subprocess.run(["git", "-C", folder.name, *words], check=True)
+
+    def changed(self, text):
+        self.sidecar.write_text(text)
+        return suite_streams.changed_members(self.version)
+
+    def test_members_may_be_added_but_not_changed(self):
+        before = suite_streams.sidecar_sums(self.version)
+        self.assertTrue(before.endswith("  accept/GOF/GOF-0001a.json\n"), before)
+        added = '{"id": "GOF-0001a", "sha256_int": "ab", "superseded_by": "GOF-0001b"}'
+        self.assertEqual(self.changed(added), [])
+        self.assertNotEqual(suite_streams.sidecar_sums(self.version), before)
+        for text in ('{"id": "GOF-0001a", "sha256_int": "ac"}', '{"id": "GOF-0001a"}'):
+            (complaint,) = self.changed(text)
+            self.assertIn("\"sha256_int\" was 'ab'", complaint)
+
+
 class StressTier(unittest.TestCase):
     """Streams of which only digests are kept."""
 

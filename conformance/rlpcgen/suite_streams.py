@@ -5,6 +5,7 @@ import json
 import multiprocessing
 import pathlib
 import re
+import subprocess
 import sys
 
 _CONFORMANCE = pathlib.Path(__file__).resolve().parents[1]
@@ -212,6 +213,23 @@ def sidecars(folder):
 def sidecar_sums(folder):
     """The text of SHA256SUMS.sidecars."""
     return _sums_of(pathlib.Path(folder), sidecars(folder))
+
+
+def _committed(path):
+    """The sidecar in the last commit; {}: it has none."""
+    done = subprocess.run(["git", "-C", path.parent, "show", f"HEAD:./{path.name}"],
+                          capture_output=True, check=False)
+    return json.loads(done.stdout) if done.returncode == 0 else {}
+
+
+def changed_members(folder):
+    """Complaints: to released sidecars, members may be added; none may change."""
+    found = []
+    for path in sidecars(folder):
+        now = json.loads(path.read_text(encoding="utf-8"))
+        found += [f"{path}: \"{name}\" was {value!r} in the last commit"
+                  for name, value in _committed(path).items() if now.get(name) != value]
+    return found
 
 
 def _sums_of(folder, paths):
