@@ -310,14 +310,17 @@ class Figures(ToolsTest):
         rms = [float(row[head.index("rms_error")]) for row in rows]
         self.assertAlmostEqual(math.sqrt(sum(r * r for r in rms) / 60), metrics["rms_error"],
                                delta=1e-12)
-        psnr = [float(row[head.index("psnr_db")]) for row in rows]
-        self.assertAlmostEqual(sum(psnr) / 60, metrics["mean_psnr_db"], delta=1e-9)
+        psnr = [float(row[head.index("ramanathan_psnr_db")]) for row in rows]
+        self.assertAlmostEqual(sum(psnr) / 60, metrics["ramanathan_psnr_db"], delta=1e-9)
         surface = self.ok("rlpccmp", INPUTS / "elephant.obj", self.path("a.rlpc"),
                           "--json").json()["surface"]
         column = {name: [float(row[i]) for row in rows] for i, name in enumerate(head)}
-        spatial, temporal = sum(column["sted_spatial"]) / 60, sum(column["sted_temporal"]) / 58
-        self.assertGreater(min(spatial, temporal), 0)
-        self.assertAlmostEqual(surface["sted"], math.hypot(spatial, temporal), delta=1e-12)
+        for name, steps, weight in (("sted", 59, surface["sted_c"]), ("ring_edge_difference", 58, 1)):
+            spatial = sum(column[f"{name}_spatial"]) / 60
+            temporal = sum(column[f"{name}_temporal"]) / steps
+            self.assertGreater(min(spatial, temporal), 0)
+            self.assertAlmostEqual(surface[name], math.hypot(spatial, weight * temporal),
+                                   delta=1e-12)
         angles = column["max_normal_angle_degrees"]
         self.assertEqual(surface["max_normal_angle_degrees"], max(angles))
         self.assertEqual(surface["max_normal_angle_frame"], angles.index(max(angles)))
@@ -328,8 +331,9 @@ class Figures(ToolsTest):
             self.encode(self.path("a.rlpc"), "--kg", kg, "--keep-order")
             surface = self.ok("rlpccmp", INPUTS / "elephant.obj", self.path("a.rlpc"),
                               "--json").json()["surface"]
-            found.append([surface[name] for name in ("sted_spatial", "sted_temporal", "sted",
-                                                     "mean_normal_angle_degrees")])
+            found.append([surface[name] for name in (
+                "sted_spatial", "sted_temporal", "sted", "ring_edge_difference",
+                "mean_normal_angle_degrees")])
         for finer, coarser in zip(found, found[1:]):
             for a, b in zip(finer, coarser):
                 self.assertLess(a, b, found)

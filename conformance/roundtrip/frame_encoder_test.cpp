@@ -109,7 +109,7 @@ TEST_P(EachProfile, ReportsTheMetricsOfTheStream) {
   EXPECT_EQ(reported.max_error, whole.max_error);
   EXPECT_EQ(reported.max_error_frame, whole.max_error_frame);
   EXPECT_EQ(reported.max_displacement, whole.max_displacement);
-  EXPECT_EQ(reported.mean_psnr_db, whole.mean_psnr_db);
+  EXPECT_EQ(reported.ramanathan_psnr_db, whole.ramanathan_psnr_db);
   EXPECT_TRUE(reported.frames.empty());
   EXPECT_EQ(encoded.report.bytes, encoded.bytes.size());
 }

@@ -33,7 +33,7 @@ std::string distortion_charts(const Distortion& d) {
   const auto line = [](const char* name, const char* colour, const auto& of,
                        const auto& value) { return over_frames(name, colour, of, value); };
   ChartSeries temporal =
-      line("temporal part", kRed, surface, [](const auto& f) { return f.sted_temporal; });
+      line("temporal part", kRed, surface, [](const auto& f) { return f.ring_temporal; });
   temporal.values.front() = temporal.values.back() = kNothing;
   std::string html = "<div class=\"charts\">\n";
   html +=
@@ -44,12 +44,16 @@ std::string distortion_charts(const Distortion& d) {
       "KG error", "per cent",
       {line("KG error", kBlue, frames, [](const auto& f) { return kg_error_percent(f); })});
   html += line_chart(
-      "STED", "of edges in each frame, and over time",
-      {line("spatial part", kBlue, surface, [](const auto& f) { return f.sted_spatial; }),
+      "STED, spatial part", "of edges in each frame",
+      {line("spatial part", kBlue, surface, [](const auto& f) { return f.sted_spatial; })});
+  html += line_chart(
+      "Edge difference in one ring", "of edges in each frame, and over time",
+      {line("spatial part", kBlue, surface, [](const auto& f) { return f.ring_spatial; }),
        temporal});
-  ChartSeries psnr = line("PSNR", kBlue, frames, [](const auto& f) { return f.psnr_db; });
+  ChartSeries psnr =
+      line("PSNR", kBlue, frames, [](const auto& f) { return f.diagonal_psnr_db; });
   psnr.worst_is_smallest = true;
-  html += line_chart("PSNR", "dB", {psnr});
+  html += line_chart("PSNR, peak: the diagonal", "dB", {psnr});
   html += line_chart("Normal deviation, mean", "degrees",
                      {line("mean by area", kBlue, surface,
                            [](const auto& f) { return f.mean_normal_angle; })});
@@ -62,10 +66,11 @@ std::string distortion_charts(const Distortion& d) {
 std::vector<KeyFigure> key_figures(const Distortion& d) {
   const Metrics& m = d.metrics;
   const SurfaceMetrics& s = d.surface;
-  return {{number_text(m.kg_error_percent, 3) + " %", "KG error"},
+  return {{number_text(m.kg_error_percent, 3) + " %", "KG error, mean of each frame"},
+          {number_text(m.kg_sequence_error_percent, 3) + " %", "KG error, one mean"},
           {number_text(m.rms_error_percent, 3) + " %", "of the diagonal, RMS distance"},
           {number_text(m.max_error_percent, 3) + " %", "of the diagonal, largest"},
-          {number_text(m.mean_psnr_db, 3) + " dB", "PSNR, mean of frames"},
+          {number_text(m.diagonal_psnr_db, 3) + " dB", "PSNR, peak: the diagonal"},
           {number_text(s.sted, 3), "STED"},
           {number_text(s.mean_normal_angle, 3) + "°", "normal deviation, mean"},
           {number_text(s.max_normal_angle, 3) + "°", "normal deviation, largest"}};

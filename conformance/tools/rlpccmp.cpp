@@ -59,19 +59,31 @@ The vertices of a stream are in the order of the input only if it was encoded
 with --keep-order. Otherwise pass the file that rlpcenc --order-map wrote.
 
 Measures
-  KG error  100 * ||A - B|| / ||A - mean vertex of each frame of A||, per cent
+  KG error  100 * ||A - B|| / ||A - E(A)||, per cent, in two norms. E(A) is the
+            mean vertex of each frame of A: this is the KG error of rlpcenc and
+            of --max-kg. Or it is one mean of all vertices of all frames: this
+            is the norm of most published figures, and the smaller number. The
+            ratio of the two is a constant of A
   RMS       root mean square distance of vertices, in units of A
-  PSNR      of Ramanathan, Kassim and Tan 2008, 3.2: -10 log10 of the squared
-            error over the vertices that moved, relative to the largest
-            displacement; mean over the frames
-  STED      spatio-temporal edge difference, after Vasa and Skala 2011: with
-            ed = |l - l'| / l of an edge, the deviation of ed, weighted by l,
-            from its mean over the edges that meet in a vertex; mean over
-            vertices and frames (spatial part). The same for the virtual edges
-            sqrt(distance^2 + (0.01 d)^2) from a vertex to itself one frame
-            earlier and later, d the diagonal of A's first frame (temporal
-            part). Root of the sum of squares of both. Neighbourhood and time
-            window 1, dt = 0.01, c = 1
+  PSNR      20 log10(diagonal / RMS), the diagonal of the bounding box of all
+            frames of A
+  PSNR of Ramanathan, Kassim and Tan 2008, 3.2
+            -10 log10 of the squared error over the vertices that moved,
+            relative to the largest displacement; mean over the frames
+  STED      spatio-temporal edge difference of Vasa and Skala 2011, as their
+            program has it: with ed = (l - l') / l of an edge, the deviation of
+            ed, weighted by l, from its mean over the edges that meet in a
+            vertex or in its neighbours; mean over vertices and frames (spatial
+            part). With s = sqrt(step^2 + dt^2) of each step of a vertex from
+            frame to frame, in diagonals of A's first frame: |s - s'| relative
+            to the mean of s over the steps f - 5 to f + 4; mean over vertices
+            and steps (temporal part). sqrt(spatial^2 + (c * temporal)^2),
+            dt = 0.0003, c = 0.00009144
+  ring      edge difference in one ring, which rlpccmp up to 1.1.6 called STED:
+            with ed = |l - l'| / l, over the edges that meet in a vertex; and
+            the same over two virtual edges, from a vertex to itself a frame
+            earlier and later, sqrt(distance^2 + (0.01 d)^2), d the diagonal of
+            A's first frame. Root of the sum of squares of both
   normals   angle between the normals of a triangle in A and B; mean weighted by
             area in A
 
@@ -219,16 +231,19 @@ std::string digits(double value) {
 
 std::optional<rlpc::OutputError> write_csv(const std::string& path, const rlpc::Distortion& d) {
   std::string text =
-      "frame,kg_error_percent,rms_error,max_error,max_error_vertex,psnr_db,sted_spatial,"
-      "sted_temporal,mean_normal_angle_degrees,max_normal_angle_degrees\n";
+      "frame,kg_error_percent,rms_error,max_error,max_error_vertex,diagonal_psnr_db,"
+      "ramanathan_psnr_db,sted_spatial,sted_temporal,ring_edge_difference_spatial,"
+      "ring_edge_difference_temporal,mean_normal_angle_degrees,max_normal_angle_degrees\n";
   for (std::size_t f = 0; f < d.metrics.frames.size(); ++f) {
     const rlpc::FrameMetrics& frame = d.metrics.frames[f];
     const rlpc::FrameSurface& surface = d.surface.frames[f];
     text += std::to_string(f) + "," + digits(rlpc::kg_error_percent(frame)) + "," +
             digits(frame.rms_error) + "," + digits(frame.max_error) + "," +
-            std::to_string(frame.max_error_vertex) + "," + digits(frame.psnr_db) + "," +
-            digits(surface.sted_spatial) + "," + digits(surface.sted_temporal) + "," +
-            digits(surface.mean_normal_angle) + "," + digits(surface.max_normal_angle) + "\n";
+            std::to_string(frame.max_error_vertex) + "," + digits(frame.diagonal_psnr_db) +
+            "," + digits(frame.ramanathan_psnr_db) + "," + digits(surface.sted_spatial) + "," +
+            digits(surface.sted_temporal) + "," + digits(surface.ring_spatial) + "," +
+            digits(surface.ring_temporal) + "," + digits(surface.mean_normal_angle) + "," +
+            digits(surface.max_normal_angle) + "\n";
   }
   auto file = rlpc::OutputFile::create(path);
   if (!file) return file.error();
@@ -267,18 +282,22 @@ void print_report(const rlpc::ComparisonPair& pair, const Rate& rate,
     std::printf("  rate      %.4f bits per vertex and frame (%llu bytes)\n", rate.bpvf,
                 static_cast<unsigned long long>(rate.bytes));
   }
-  std::printf("  KG error  %.4g %%\n", m.kg_error_percent);
+  std::printf("  KG error  %.4g %%, mean of each frame; %.4g %%, one mean of all frames\n",
+              m.kg_error_percent, m.kg_sequence_error_percent);
   std::printf("  RMS       %.6g (%.4f %% of the diagonal)\n", m.rms_error, m.rms_error_percent);
   std::printf("  largest   %.6g (%.4f %% of the diagonal), frame %u, vertex %u\n", m.max_error,
               m.max_error_percent, m.max_error_frame, m.max_error_vertex);
   if (m.max_error > 0) {
-    std::printf("  PSNR      %.2f dB, mean of frames\n", m.mean_psnr_db);
+    std::printf("  PSNR      %.2f dB of the diagonal; %.2f dB, Ramanathan's, mean of frames\n",
+                m.diagonal_psnr_db, m.ramanathan_psnr_db);
   } else {
     std::printf("  PSNR      infinite: every frame is exact\n");
   }
   const rlpc::SurfaceMetrics& s = d.surface;
   std::printf("  STED      %.6g (spatial part %.6g, temporal part %.6g)\n", s.sted,
               s.sted_spatial, s.sted_temporal);
+  std::printf("  ring      %.6g, edge difference in one ring (spatial %.6g, temporal %.6g)\n",
+              s.ring_difference, s.ring_spatial, s.ring_temporal);
   std::printf("  normals   mean deviation %.4g degrees, largest %.4g, frame %u, triangle %u\n",
               s.mean_normal_angle, s.max_normal_angle, s.max_normal_frame,
               s.max_normal_triangle);

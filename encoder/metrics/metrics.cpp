@@ -1,7 +1,6 @@
 #include "encoder/metrics/metrics.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -22,28 +21,31 @@ double squared_distance(std::span<const float> a, std::span<const float> b,
   return sum;
 }
 
-// Sum of squared distances from the mean vertex. Coordinates are taken relative to the first
-// vertex, so that the sum is exactly 0 if all vertices coincide.
-double spread_about_mean(std::span<const float> xyz) {
+// Sets the mean vertex, and the sum of squared distances from it. Coordinates are taken
+// relative to the first vertex, so that the sum is exactly 0 if all vertices coincide.
+void measure_spread(std::span<const float> xyz, FrameMetrics& frame) {
   const std::size_t count = xyz.size() / 3;
-  double spread = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double first = xyz[axis];
     double sum = 0;
     for (std::size_t v = 0; v < count; ++v) sum += xyz[3 * v + axis] - first;
     const double mean = sum / static_cast<double>(count);
+    frame.mean[axis] = first + mean;
     for (std::size_t v = 0; v < count; ++v) {
       const double d = xyz[3 * v + axis] - first - mean;
-      spread += d * d;
+      frame.spread += d * d;
     }
   }
-  return spread;
 }
 
 // 100 * part / whole; 0 / 0 is 0.
 double percent(double part, double whole) {
   if (whole > 0) return 100 * part / whole;
   return part > 0 ? kInfinity : 0;
+}
+
+double diagonal_psnr(double diagonal, double rms_error) {
+  return rms_error > 0 ? 20 * std::log10(diagonal / rms_error) : kInfinity;
 }
 
 }  // namespace
@@ -67,7 +69,7 @@ void MetricsAccumulator::add_frame(std::span<const float> original,
       frame.max_error_vertex = v;
     }
   }
-  frame.spread = spread_about_mean(original);
+  measure_spread(original, frame);
   frame.rms_error = std::sqrt(frame.squared_error / num_vertices_);
   frame.max_error = std::sqrt(max_squared);
   for (std::size_t i = 0; i < original.size(); ++i) {
@@ -83,6 +85,12 @@ void MetricsAccumulator::add_frame(std::span<const float> original,
 void MetricsAccumulator::add_to_totals(const FrameMetrics& frame) {
   squared_error_ += frame.squared_error;
   spread_ += frame.spread;
+  if (num_frames_ == 0) first_mean_ = frame.mean;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double moved = frame.mean[axis] - first_mean_[axis];
+    mean_sum_[axis] += moved;
+    squared_mean_sum_ += moved * moved;
+  }
   if (frame.max_error > totals_.max_error) {
     totals_.max_error = frame.max_error;
     totals_.max_error_frame = num_frames_;
@@ -129,6 +137,14 @@ void MetricsAccumulator::append(const MetricsAccumulator& next) {
   previous_ = next.previous_;
 }
 
+// Sum of squared distances from the mean of all frames: those from the mean of each frame, and
+// those of the means. Exactly the first if the means coincide.
+double MetricsAccumulator::sequence_spread() const {
+  double between = squared_mean_sum_;
+  for (const double sum : mean_sum_) between -= sum * sum / num_frames_;
+  return spread_ + std::max(between, 0.0) * num_vertices_;
+}
+
 Metrics MetricsAccumulator::result() const {
   assert(num_frames_ > 0);
   Metrics m = totals_;
@@ -141,8 +157,13 @@ Metrics MetricsAccumulator::result() const {
     squared_diagonal += side * side;
   }
   m.diagonal = std::sqrt(squared_diagonal);
+  const double count = static_cast<double>(num_frames_) * num_vertices_;
+  const double sequence = sequence_spread();
   m.kg_error_percent = percent(std::sqrt(squared_error_), std::sqrt(spread_));
-  m.rms_error = std::sqrt(squared_error_ / (static_cast<double>(num_frames_) * num_vertices_));
+  m.kg_sequence_error_percent = percent(std::sqrt(squared_error_), std::sqrt(sequence));
+  m.rms_error = std::sqrt(squared_error_ / count);
+  m.rms_spread = std::sqrt(spread_ / count);
+  m.rms_sequence_spread = std::sqrt(sequence / count);
   m.rms_error_percent = percent(m.rms_error, m.diagonal);
   m.max_error_percent = percent(m.max_error, m.diagonal);
   m.max_displacement = std::sqrt(max_squared_displacement_);
@@ -154,12 +175,14 @@ void MetricsAccumulator::finish_psnr(Metrics& metrics) const {
   const double peak =
       metrics.max_displacement > 0 ? metrics.max_displacement : metrics.diagonal;
   for (FrameMetrics& frame : metrics.frames) {
+    frame.diagonal_psnr_db = diagonal_psnr(metrics.diagonal, frame.rms_error);
     // If the peak is 0, the quotient is infinite, and PSNR minus infinity.
-    frame.psnr_db = frame.squared_error > 0
-                        ? -10 * std::log10(mean_squared(frame) / (peak * peak))
-                        : kInfinity;
+    frame.ramanathan_psnr_db = frame.squared_error > 0
+                                   ? -10 * std::log10(mean_squared(frame) / (peak * peak))
+                                   : kInfinity;
   }
-  metrics.mean_psnr_db =
+  metrics.diagonal_psnr_db = diagonal_psnr(metrics.diagonal, metrics.rms_error);
+  metrics.ramanathan_psnr_db =
       num_inexact_ > 0 ? 20 * std::log10(peak) - 10 * log_sum_ / num_inexact_ : kInfinity;
 }
 

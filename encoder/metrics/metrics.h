@@ -4,6 +4,7 @@
 // only PSNR uses a library function other than a square root.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,12 +14,15 @@ namespace rlpc {
 struct FrameMetrics {
   double squared_error = 0;  // sum over vertices of the squared distance from the original
   double spread = 0;         // sum over vertices of the squared distance from their mean
-  double rms_error = 0;      // units
-  double max_error = 0;      // units
+  std::array<double, 3> mean = {};  // vertex of the original
+  double rms_error = 0;             // units
+  double max_error = 0;             // units
   std::uint32_t max_error_vertex = 0;
   // Vertices of the original that moved since the previous frame; in frame 0: all.
   std::uint32_t moved_vertices = 0;
-  double psnr_db = 0;  // infinite if the frame is exact
+  // Infinite if the frame is exact:
+  double diagonal_psnr_db = 0;    // as in Metrics
+  double ramanathan_psnr_db = 0;  // see MetricsAccumulator
 };
 
 struct Metrics {
@@ -26,6 +30,13 @@ struct Metrics {
   // 100 * ||A - A'||_F / ||A - E(A)||_F, E(A) the mean vertex of each frame. If all vertices of
   // every frame coincide: 0 if there is no error, otherwise infinite.
   double kg_error_percent = 0;
+  // The same, E(A) being one vertex: the mean of all vertices of all frames. Published KG
+  // errors of the sequences cow and chicken have this norm.
+  double kg_sequence_error_percent = 0;
+  // RMS distance of the original's vertices from the mean of their frame, and from that of all
+  // frames, units. Both KG errors are rms_error relative to these.
+  double rms_spread = 0;
+  double rms_sequence_spread = 0;
   double rms_error = 0;               // RMS distance over vertices and frames, units
   double rms_error_percent = 0;       // of the diagonal; infinite if only that is 0
   double max_error = 0;               // units
@@ -34,11 +45,14 @@ struct Metrics {
   std::uint32_t max_error_vertex = 0;
   double diagonal = 0;          // of the bounding box of the original over all frames, units
   double max_displacement = 0;  // largest in the original between adjacent frames, units
-  double mean_psnr_db = 0;      // over all inexact frames; infinite if there are none
+  // 20 log10(diagonal / rms_error): the peak is the diagonal. Infinite without an error.
+  double diagonal_psnr_db = 0;
+  double ramanathan_psnr_db = 0;     // mean over all inexact frames; infinite if there are none
   std::vector<FrameMetrics> frames;  // empty with kTotals
 };
 
-// PSNR is that of Ramanathan, Kassim and Tan 2008, section 3.2: -10 log10 PMSE with
+// Ramanathan's PSNR is that of Ramanathan, Kassim and Tan 2008, section 3.2: -10 log10 PMSE
+// with
 //   PMSE = 1/Nn * sum over vertices of 1/3 * sum over axes of (difference / R)^2,
 // Nn the number of vertices that moved since the previous frame, R the largest displacement of
 // a vertex between adjacent frames of the whole animation. Cases that the paper leaves
@@ -70,6 +84,7 @@ class MetricsAccumulator {
   void add_motion(std::span<const float> original, FrameMetrics& frame);
   void add_to_totals(const FrameMetrics& frame);
   double mean_squared(const FrameMetrics& frame) const;
+  double sequence_spread() const;
   void finish_psnr(Metrics& metrics) const;
 
   std::uint32_t num_vertices_;
@@ -79,6 +94,9 @@ class MetricsAccumulator {
   Metrics totals_;  // only the maximum errors so far
   double squared_error_ = 0;
   double spread_ = 0;
+  std::array<double, 3> first_mean_ = {};
+  std::array<double, 3> mean_sum_ = {};  // of the means of frames, relative to the first
+  double squared_mean_sum_ = 0;
   double log_sum_ = 0;  // sum of log10(mean_squared()) over inexact frames
   std::uint32_t num_inexact_ = 0;
   std::vector<float> previous_;

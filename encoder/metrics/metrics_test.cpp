@@ -20,7 +20,9 @@ TEST(Metrics, AreZeroForAnExactCopy) {
   EXPECT_EQ(m.rms_error, 0);
   EXPECT_EQ(m.max_error, 0);
   EXPECT_EQ(m.diagonal, 5);
-  EXPECT_EQ(m.mean_psnr_db, kInfinity);
+  EXPECT_EQ(m.kg_sequence_error_percent, 0);
+  EXPECT_EQ(m.diagonal_psnr_db, kInfinity);
+  EXPECT_EQ(m.ramanathan_psnr_db, kInfinity);
 }
 
 // Two frames of two vertices, computed by hand.
@@ -37,6 +39,10 @@ TEST(Metrics, FollowThePapers) {
   EXPECT_EQ(m.num_vertices, 2U);
   EXPECT_DOUBLE_EQ(m.kg_error_percent, 100 * std::sqrt(squared_error) / std::sqrt(12.0));
   EXPECT_DOUBLE_EQ(m.rms_error, std::sqrt(squared_error / 4));
+  // The mean of all four vertices is (1, 1, 0); squared distances 2, 2, 2 and 10.
+  EXPECT_DOUBLE_EQ(m.kg_sequence_error_percent, 100 * std::sqrt(squared_error) / 4);
+  EXPECT_DOUBLE_EQ(m.rms_spread, std::sqrt(12.0 / 4));
+  EXPECT_DOUBLE_EQ(m.rms_sequence_spread, std::sqrt(16.0 / 4));
   EXPECT_DOUBLE_EQ(m.diagonal, std::sqrt(20.0));
   EXPECT_DOUBLE_EQ(m.rms_error_percent, 100 * m.rms_error / m.diagonal);
   EXPECT_EQ(m.max_error, 1.25);
@@ -46,6 +52,9 @@ TEST(Metrics, FollowThePapers) {
   EXPECT_EQ(m.max_displacement, 4);
 
   ASSERT_EQ(m.frames.size(), 2U);
+  EXPECT_DOUBLE_EQ(m.diagonal_psnr_db, 20 * std::log10(m.diagonal / m.rms_error));
+  EXPECT_DOUBLE_EQ(m.frames[0].diagonal_psnr_db,
+                   20 * std::log10(m.diagonal / std::sqrt(0.125)));
   EXPECT_EQ(m.frames[0].spread, 2);
   EXPECT_EQ(m.frames[1].spread, 10);
   EXPECT_EQ(m.frames[0].squared_error, 0.25);
@@ -54,9 +63,10 @@ TEST(Metrics, FollowThePapers) {
   EXPECT_EQ(m.frames[0].moved_vertices, 2U);  // all in the first frame
   EXPECT_EQ(m.frames[1].moved_vertices, 1U);
   // PMSE = 0.25 / (3 * 2 * 16) and 2.5625 / (3 * 1 * 16).
-  EXPECT_DOUBLE_EQ(m.frames[0].psnr_db, -10 * std::log10(0.25 / 96));
-  EXPECT_DOUBLE_EQ(m.frames[1].psnr_db, -10 * std::log10(2.5625 / 48));
-  EXPECT_DOUBLE_EQ(m.mean_psnr_db, (m.frames[0].psnr_db + m.frames[1].psnr_db) / 2);
+  EXPECT_DOUBLE_EQ(m.frames[0].ramanathan_psnr_db, -10 * std::log10(0.25 / 96));
+  EXPECT_DOUBLE_EQ(m.frames[1].ramanathan_psnr_db, -10 * std::log10(2.5625 / 48));
+  EXPECT_DOUBLE_EQ(m.ramanathan_psnr_db,
+                   (m.frames[0].ramanathan_psnr_db + m.frames[1].ramanathan_psnr_db) / 2);
 }
 
 TEST(Metrics, AppendPartsAsIfAddedInOrder) {
@@ -77,17 +87,18 @@ TEST(Metrics, AppendPartsAsIfAddedInOrder) {
     const Metrics a = whole.result();
     const Metrics b = appended.result();
     EXPECT_EQ(a.kg_error_percent, b.kg_error_percent);
+    EXPECT_EQ(a.kg_sequence_error_percent, b.kg_sequence_error_percent);
     EXPECT_EQ(a.rms_error, b.rms_error);
     EXPECT_EQ(a.max_error, b.max_error);
     EXPECT_EQ(a.max_error_frame, b.max_error_frame);
     EXPECT_EQ(a.diagonal, b.diagonal);
     EXPECT_EQ(a.max_displacement, b.max_displacement);
-    EXPECT_EQ(a.mean_psnr_db, b.mean_psnr_db);
+    EXPECT_EQ(a.ramanathan_psnr_db, b.ramanathan_psnr_db);
     ASSERT_EQ(a.frames.size(), b.frames.size());
     for (std::size_t f = 0; f < a.frames.size(); ++f) {
       EXPECT_EQ(a.frames[f].squared_error, b.frames[f].squared_error);
       EXPECT_EQ(a.frames[f].moved_vertices, b.frames[f].moved_vertices);
-      EXPECT_EQ(a.frames[f].psnr_db, b.frames[f].psnr_db);
+      EXPECT_EQ(a.frames[f].ramanathan_psnr_db, b.frames[f].ramanathan_psnr_db);
     }
   }
 }
@@ -108,6 +119,7 @@ TEST(Metrics, AreZeroOrInfiniteIfVerticesCoincide) {
   MetricsAccumulator exact(7);
   exact.add_frame(point, point);
   EXPECT_EQ(exact.result().kg_error_percent, 0);
+  EXPECT_EQ(exact.result().kg_sequence_error_percent, 0);
   EXPECT_EQ(exact.result().max_error_percent, 0);
 
   MetricsAccumulator inexact(7);
@@ -115,8 +127,20 @@ TEST(Metrics, AreZeroOrInfiniteIfVerticesCoincide) {
   moved[4] += 1;
   inexact.add_frame(point, moved);
   EXPECT_EQ(inexact.result().kg_error_percent, kInfinity);
+  EXPECT_EQ(inexact.result().kg_sequence_error_percent, kInfinity);
   EXPECT_EQ(inexact.result().rms_error_percent, kInfinity);
-  EXPECT_EQ(inexact.result().mean_psnr_db, -kInfinity);
+  EXPECT_EQ(inexact.result().diagonal_psnr_db, -kInfinity);
+  EXPECT_EQ(inexact.result().ramanathan_psnr_db, -kInfinity);
+}
+
+// Both norms differ only by the motion of the mean vertex.
+TEST(Metrics, NormsAreEqualIfTheMeanStays) {
+  MetricsAccumulator metrics(2);
+  metrics.add_frame(std::vector<float>{0.1F, 0, 0, 0.3F, 0, 0}, std::vector<float>(6));
+  metrics.add_frame(std::vector<float>{0.3F, 0, 0, 0.1F, 0, 0}, std::vector<float>(6));
+  const Metrics m = metrics.result();
+  EXPECT_EQ(m.kg_sequence_error_percent, m.kg_error_percent);
+  EXPECT_EQ(m.rms_sequence_spread, m.rms_spread);
 }
 
 TEST(Metrics, UseTheDiagonalAsPeakIfNothingMoves) {
@@ -126,7 +150,7 @@ TEST(Metrics, UseTheDiagonalAsPeakIfNothingMoves) {
   const Metrics m = metrics.result();
   EXPECT_EQ(m.max_displacement, 0);
   EXPECT_EQ(m.frames[1].moved_vertices, 0U);
-  EXPECT_DOUBLE_EQ(m.frames[1].psnr_db, -10 * std::log10(9.0 / (3 * 2 * 100)));
+  EXPECT_DOUBLE_EQ(m.frames[1].ramanathan_psnr_db, -10 * std::log10(9.0 / (3 * 2 * 100)));
 }
 
 TEST(Metrics, AcceptHugeCoordinates) {

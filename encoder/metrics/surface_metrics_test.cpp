@@ -6,43 +6,10 @@
 #include <random>
 #include <vector>
 
+#include "encoder/metrics/metrics_testing.h"
+
 namespace rlpc {
 namespace {
-
-using Frame = std::vector<float>;
-
-// A bumpy grid of side * side vertices, translated by `shift` and scaled by `scale`.
-Frame sheet(std::uint32_t side, float shift, float scale) {
-  Frame xyz;
-  for (std::uint32_t y = 0; y < side; ++y) {
-    for (std::uint32_t x = 0; x < side; ++x) {
-      const float bump = (x * 7 + y * 3) % 4 == 0 ? 0.5F : 0.0F;
-      for (const float c : {static_cast<float>(x) + shift, static_cast<float>(y), bump}) {
-        xyz.push_back(scale * c);
-      }
-    }
-  }
-  return xyz;
-}
-
-std::vector<Triangle> sheet_triangles(std::uint32_t side) {
-  std::vector<Triangle> triangles;
-  for (std::uint32_t y = 0; y + 1 < side; ++y) {
-    for (std::uint32_t x = 0; x + 1 < side; ++x) {
-      const std::uint32_t v = y * side + x;
-      triangles.push_back({v, v + 1, v + side});
-      triangles.push_back({v + 1, v + side + 1, v + side});
-    }
-  }
-  return triangles;
-}
-
-TEST(SurfaceMetrics, EdgesAreListedOnce) {
-  const std::vector<Triangle> triangles{{2, 0, 1}, {1, 0, 3}, {3, 3, 1}, {2, 0, 1}};
-  const std::vector<std::array<std::uint32_t, 2>> expected{
-      {0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}};
-  EXPECT_EQ(edges_of(triangles), expected);
-}
 
 TEST(SurfaceMetrics, AreZeroUnderRigidMotion) {
   const std::vector<Triangle> triangles = sheet_triangles(5);
@@ -61,61 +28,15 @@ TEST(SurfaceMetrics, AreZeroUnderRigidMotion) {
   EXPECT_EQ(m.sted, 0);
   EXPECT_EQ(m.sted_spatial, 0);
   EXPECT_EQ(m.sted_temporal, 0);
+  EXPECT_EQ(m.ring_difference, 0);
   // The normals rotate with the mesh.
   EXPECT_GT(m.mean_normal_angle, 1);
-}
-
-TEST(SurfaceMetrics, HaveNoSpatialPartUnderScaling) {
-  const std::vector<Triangle> triangles = sheet_triangles(4);
-  SurfaceAccumulator metrics(16, triangles);
-  const double diagonal = std::sqrt(9 + 9 + 0.25);
-  const double apart = 0.01 * diagonal;
-  std::vector<double> changes;  // ed of the virtual edges
-  std::vector<double> lengths;
-  float shift = 0;
-  for (const float step : {0.0F, 1.0F, 3.0F}) {
-    shift += step;
-    metrics.add_frame(sheet(4, shift, 1), sheet(4, shift, 2));
-    if (step == 0) continue;
-    lengths.push_back(std::hypot(step, apart));
-    changes.push_back(std::abs(std::hypot(2 * step, apart) - lengths.back()) / lengths.back());
-  }
-  const SurfaceMetrics m = metrics.result();
-  EXPECT_EQ(m.sted_spatial, 0);
-  const double weight = lengths[0] + lengths[1];
-  const double mean = (lengths[0] * changes[0] + lengths[1] * changes[1]) / weight;
-  double variance = 0;
-  for (std::size_t i = 0; i < 2; ++i) {
-    variance += lengths[i] * (changes[i] - mean) * (changes[i] - mean) / weight;
-  }
-  EXPECT_NEAR(m.sted_temporal, std::sqrt(variance), 1e-12);
-  EXPECT_EQ(m.sted, m.sted_temporal);
-  EXPECT_EQ(m.max_normal_angle, 0);
-  ASSERT_EQ(m.frames.size(), 3U);
-  EXPECT_EQ(m.frames[0].sted_temporal, 0);
-  EXPECT_EQ(m.frames[1].sted_temporal, m.sted_temporal);
-  EXPECT_EQ(m.frames[2].sted_temporal, 0);
-}
-
-// A triangle with sides 3, 4 and 5; the side of length 3 is stretched to 6.
-TEST(SurfaceMetrics, AgreeWithAHandComputedExample) {
-  const std::vector<Triangle> triangles{{0, 1, 2}};
-  SurfaceAccumulator metrics(3, triangles);
-  metrics.add_frame(Frame{0, 0, 0, 3, 0, 0, 0, 4, 0}, Frame{0, 0, 0, 6, 0, 0, 0, 4, 0});
-  const auto dev = [](double la, double da, double lb, double db) {
-    return std::sqrt(la * lb) / (la + lb) * std::abs(da - db);
-  };
-  const double hypotenuse = (std::sqrt(52.0) - 5) / 5;
-  const double sum = dev(3, 1, 4, 0) + dev(3, 1, 5, hypotenuse) + dev(4, 0, 5, hypotenuse);
-  const SurfaceMetrics m = metrics.result();
-  EXPECT_NEAR(m.sted_spatial, sum / 3, 1e-12);
-  EXPECT_EQ(m.sted_temporal, 0);
-  EXPECT_EQ(m.sted, m.sted_spatial);
 }
 
 TEST(SurfaceMetrics, AreProportionalToNoise) {
   const std::vector<Triangle> triangles = sheet_triangles(20);
   std::vector<double> sted;
+  std::vector<double> ring;
   for (const float size : {0.001F, 0.002F, 0.004F}) {
     SurfaceAccumulator metrics(400, triangles);
     std::mt19937 random(7);
@@ -128,10 +49,13 @@ TEST(SurfaceMetrics, AreProportionalToNoise) {
       metrics.add_frame(original, noisy);
     }
     sted.push_back(metrics.result().sted);
+    ring.push_back(metrics.result().ring_difference);
   }
-  EXPECT_GT(sted[0], 0);
-  EXPECT_NEAR(sted[1] / sted[0], 2, 0.02);
-  EXPECT_NEAR(sted[2] / sted[1], 2, 0.02);
+  for (const std::vector<double>& found : {sted, ring}) {
+    EXPECT_GT(found[0], 0);
+    EXPECT_NEAR(found[1] / found[0], 2, 0.02);
+    EXPECT_NEAR(found[2] / found[1], 2, 0.02);
+  }
 }
 
 TEST(SurfaceMetrics, NormalAnglesAreWeightedByArea) {
@@ -167,12 +91,14 @@ TEST(SurfaceMetrics, AreDefinedWithoutTrianglesAndForZeroSize) {
     points.add_frame(Frame{0, 0, 0, 0, 0, 0}, Frame{0, 1, 0, 0, 0, 2});
   const SurfaceMetrics m = points.result();
   EXPECT_EQ(m.sted, 0);
+  EXPECT_EQ(m.ring_difference, 0);
   EXPECT_EQ(m.mean_normal_angle, 0);
 
   const std::vector<Triangle> triangles{{0, 1, 1}};
   SurfaceAccumulator flat(2, triangles);
   flat.add_frame(Frame{1, 1, 1, 1, 1, 1}, Frame{0, 1, 0, 0, 0, 2});
   EXPECT_EQ(flat.result().sted, 0);
+  EXPECT_EQ(flat.result().ring_difference, 0);
 }
 
 }  // namespace

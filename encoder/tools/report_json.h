@@ -15,6 +15,9 @@ namespace rlpc {
 // Shared by rlpcenc and rlpccmp. Infinite values become null.
 inline nlohmann::ordered_json metrics_json(const Metrics& m) {
   return {{"kg_error_percent", m.kg_error_percent},
+          {"kg_sequence_error_percent", m.kg_sequence_error_percent},
+          {"rms_spread", m.rms_spread},
+          {"rms_sequence_spread", m.rms_sequence_spread},
           {"rms_error", m.rms_error},
           {"rms_error_percent", m.rms_error_percent},
           {"max_error", m.max_error},
@@ -22,15 +25,20 @@ inline nlohmann::ordered_json metrics_json(const Metrics& m) {
           {"max_error_frame", m.max_error_frame},
           {"max_error_vertex", m.max_error_vertex},
           {"diagonal", m.diagonal},
-          {"mean_psnr_db", m.mean_psnr_db}};
+          {"diagonal_psnr_db", m.diagonal_psnr_db},
+          {"ramanathan_psnr_db", m.ramanathan_psnr_db}};
 }
 
 inline nlohmann::ordered_json surface_json(const SurfaceMetrics& m) {
   return {{"sted", m.sted},
           {"sted_spatial", m.sted_spatial},
           {"sted_temporal", m.sted_temporal},
-          {"sted_dt", StedAccumulator::kDt},
-          {"sted_c", StedAccumulator::kTemporalWeight},
+          {"sted_dt", StedTemporal::kDt},
+          {"sted_c", kStedTemporalWeight},
+          {"ring_edge_difference", m.ring_difference},
+          {"ring_edge_difference_spatial", m.ring_spatial},
+          {"ring_edge_difference_temporal", m.ring_temporal},
+          {"ring_edge_difference_dt", RingEdgeDifference::kDt},
           {"mean_normal_angle_degrees", m.mean_normal_angle},
           {"max_normal_angle_degrees", m.max_normal_angle},
           {"max_normal_angle_frame", m.max_normal_frame},
