@@ -122,12 +122,24 @@ def parts(streams, near):
         f"{100 * near.basis / near.run.bpvf:.0f} %."]
 
 
-def whole(curves):
-    """COBRA's gain over everything, and ours over it."""
-    items = [claims.every_error(
-        f"COBRA takes about {100 * published.TOTAL_SAVED:.0f} % fewer bits of everything than a "
-        f"basis of {published.DIRECT_BITS} bits per value, or still fewer", curves["cobra"],
-        curves["direct"], 1 - published.TOTAL_SAVED)]
+def total_saved(curves, share):
+    """The gain over a basis of 64 bits per value, which takes `share` of everything. The claim is of
+    animations in which it takes half at most; of more, more can be saved."""
+    claim = (f"COBRA takes about {100 * published.TOTAL_SAVED:.0f} % fewer bits of everything than a "
+             f"basis of {published.DIRECT_BITS} bits per value")
+    if share <= published.MOST_BASIS:
+        return claims.every_error(f"{claim}, or still fewer", curves["cobra"], curves["direct"],
+                                  1 - published.TOTAL_SAVED)
+    found = [ratio for _, ratio in claims.ratios(curves["cobra"], curves["direct"])]
+    more = (f"; here {claims.percent(min(found))} to {claims.percent(max(found))} bits"
+            if found else "")
+    return (f"Not comparable: {claim} (that basis takes {100 * share:.0f} % of everything here, in "
+            f"the paper {100 * published.MOST_BASIS:.0f} % at most{more}).")
+
+
+def whole(curves, share):
+    """COBRA's gain over everything, and ours over it. share: of a basis of 64 bits per value."""
+    items = [total_saved(curves, share)]
     items.append(claims.every_error("COBRA takes fewer bits of everything than a uniformly "
                                     "quantised basis", curves["cobra"], curves["uniform"]))
     gains = [1 - ratio for _, ratio in claims.ratios(curves["cobra"], curves["direct"])]
@@ -147,4 +159,4 @@ def claims_of_paper(made, near):
     rules = {rule["name"]: rule for rule in made.study["rules"]}
     return [*uniform_steps(rules["uniform"]), cobra_steps(rules["cobra"]),
             *eigenvalue_steps(rules["eigenvalue"]), *fewer_bits(rules),
-            *predictors(made.entropies()), *parts(made.streams, near), *whole(made.curves)]
+            *predictors(made.entropies()), *parts(made.streams, near), *whole(made.curves, near.other_basis["direct"] / near.rate("direct"))]

@@ -14,12 +14,17 @@ import plots  # noqa: E402
 import report  # noqa: E402
 
 import bench as benches  # noqa: E402
+import models  # noqa: E402
+import not_reproduced  # noqa: E402
 import page  # noqa: E402
 
 OURS = {"Main": ("main", "#111111"), "High": ("high", "#8e44ad")}
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#111111")
 RATE = "bits per vertex and frame (everything counted)"
-KG = "KG error, per cent"
+KG = "KG error, per cent, one mean of all frames"
+# Programs of every paper, and of some; `scripts/quickstart` builds the first four.
+TOOLS = ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp", "plot_svg")
+MORE_TOOLS = {"sslpc": ("peer_codec",), "cobra": ("cobra_basis",)}
 
 
 class Paper:
@@ -30,10 +35,23 @@ class Paper:
         self.step = 2 if quick else 1  # of lists of settings
         self.sequence = bench.sequence
         self.report = page.Report(f"{name} on {self.sequence.name}", folder, bench.tools)
+        self.model = models.model_of(
+            self.sequence.num_vertices, models.count_triangles(self.sequence.mesh),
+            self.sequence.num_frames, bench.norm)
+        self.report.add(page.Text(self.norm_note))
+        if self.model:
+            self.report.add(page.Text(models.how_recognised(self.model)))
+
+    @property
+    def norm_note(self):
+        return ("KG errors are 100 * ||A - B|| / ||A - E(A)||, E(A) being one mean of all vertices of "
+                "all frames, the norm of the published figures. With the mean of each frame, as "
+                "rlpcenc --kg has them and rlpccmp states them first, those of this sequence are "
+                f"{self.bench.norm:.4g} times as large.")
 
     def at_error(self, name, kg):
         """A run of Main or High."""
-        return self.bench.run(name, ["--profile", OURS[name][0], "--kg", f"{kg:.6g}"])
+        return self.bench.run(name, ["--profile", OURS[name][0], *self.bench.target(kg)])
 
     def plot(self, name, title, series, x_label=RATE, y_label=KG, **scales):
         title = f"{self.sequence.name}: {title}"
@@ -42,22 +60,24 @@ class Paper:
     def heading(self, text):
         self.report.add(page.Heading(text))
 
-    def claims(self, items, not_tested):
+    def claims(self, items, paper):
         self.heading("Claims of the paper")
         self.report.add(page.Items(items))
-        self.report.add(page.Text(not_tested))
+        self.heading("Not reproduced, and why")
+        self.report.add(page.Items(not_reproduced.of(paper)))
 
     def tables(self, tables, note):
         """Adds tables (report.Table), the first of them to table.csv; all to table.md."""
         self.report.csv("table.csv", tables[0].head, tables[0].rows)
-        self.report.text("table.md", "\n".join([*(t.markdown() for t in tables), f"{note}\n"]))
+        self.report.text("table.md", "\n".join(
+            [f"{self.norm_note}\n", *(t.markdown() for t in tables), f"{note}\n"]))
 
 
 def curve_rows(curves):
     """CSV of the runs of all curves: head, rows."""
-    return (["method", "clusters", "components", "bpvf", "kg_error_percent", "encode_seconds",
-             "decode_seconds"],
-            [[r.method, r.clusters or "", r.components or "", r.bpvf, r.kg,
+    return (["method", "clusters", "components", "bpvf", "kg_sequence_error_percent",
+             "kg_error_percent", "encode_seconds", "decode_seconds"],
+            [[r.method, r.clusters or "", r.components or "", r.bpvf, r.kg, r.frame_kg,
               f"{r.encode_seconds:.3f}", f"{r.decode_seconds:.3f}"]
              for runs in curves.values() for r in runs])
 
@@ -80,6 +100,15 @@ def find_inputs(words):
         not pathlib.Path(word).exists() else word for word in words or ["elephant"])
 
 
+def check_tools(toolbox, paper):
+    """Complains of all programs that are missing at once."""
+    missing = [tool for tool in (*TOOLS, *MORE_TOOLS.get(paper, ()))
+               if not (toolbox.folder / tool).is_file()]
+    if missing:
+        remedy = toolbox.how_to_build(" ".join(missing)).replace(" it ", " them ")
+        raise benches.Failure(f"{toolbox.folder} has no {', '.join(missing)}; {remedy}")
+
+
 def main(paper, description, reproduction):
     """paper: a folder of build/reproduce. reproduction(bench, folder, quick).make() returns
     sentences."""
@@ -90,9 +119,11 @@ def main(paper, description, reproduction):
     parser.add_argument("sequences", nargs="*")
     options = parser.parse_args()
     try:
+        toolbox = codec_table.Toolbox(options.bin.resolve())
+        check_tools(toolbox, paper)
         root = options.folder or ROOT / "build" / "reproduce" / paper
         sequences = inputs.open_all(find_inputs(options.sequences),
-                                    codec_table.Toolbox(options.bin.resolve()), root / "inputs")
+                                    toolbox, root / "inputs")
         for sequence in sequences:
             folder = root
             if options.folder is None or len(sequences) > 1:

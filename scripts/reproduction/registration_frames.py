@@ -59,9 +59,30 @@ class Detail:
         return [(frame, raw / size) for frame, size in sorted(sizes.items())]
 
     def psnr(self):
-        """(frame, dB) of frames that are not exact."""
-        found = [(int(row["frame"]), float(row["psnr_db"])) for row in self.rows]
+        """(frame, dB), Ramanathan's, of frames that are not exact."""
+        found = [(int(row["frame"]), float(row["ramanathan_psnr_db"])) for row in self.rows]
         return [(frame, psnr) for frame, psnr in found if math.isfinite(psnr)]
+
+
+def mean_motion(positions):
+    """[frame]: mean distance of vertices from the frame before; 0 in the first.
+    positions: rlpca_paths.Positions."""
+    found, before = [0.0], positions.frame(0)
+    for f in range(1, positions.num_frames):
+        now = positions.frame(f)
+        found.append(statistics.fmean(map(math.dist, now, before)))
+        before = now
+    return found
+
+
+def by_motion(motion, ratios):
+    """Mean compression ratio of the frames with less than the median motion, and of the others; the
+    first frame does not count. ratios: (frame, ratio)."""
+    frames = dict(ratios)
+    middle = statistics.median(motion[f] for f in frames if f > 0)
+    calm = [ratio for f, ratio in frames.items() if f > 0 and motion[f] < middle]
+    fast = [ratio for f, ratio in frames.items() if f > 0 and motion[f] >= middle]
+    return tuple(statistics.fmean(part) if part else None for part in (calm, fast))
 
 
 def csv_rows(details):
@@ -69,7 +90,7 @@ def csv_rows(details):
     head, columns, frames = ["frame"], [], set()
     for name, detail in details.items():
         of_name = {**{f"type_{i + 1}": dict(detail.types(i)) for i in range(len(TYPES))},
-                   "ratio": dict(detail.ratios()), "psnr_db": dict(detail.psnr())}
+                   "ratio": dict(detail.ratios()), "ramanathan_psnr_db": dict(detail.psnr())}
         head += [f"{name}_{what}" for what in of_name]
         columns += of_name.values()
         frames.update(of_name["ratio"])

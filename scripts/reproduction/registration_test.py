@@ -23,6 +23,17 @@ class Published(unittest.TestCase):
             for row in table.values():
                 self.assertLess(row.type1 + row.type2, model.num_vertices)
 
+    def test_published_tables(self):
+        for rows in published.TABLE_2.values():
+            for row in rows.values():
+                self.assertLessEqual(row.type1 + row.type2, 3029)
+        # What its text says: 3.8 % of table 3, 9.7, 15 and 7.8 % of table 4.
+        self.assertAlmostEqual(46.7 / 45.3, 1.031, 3)
+        gains = [rows["spectral"][1] / rows["k-way"][1] for rows in published.TABLE_4.values()]
+        for gain, stated in zip(gains, (9.7, 15, 7.8)):
+            self.assertAlmostEqual(100 * gain - 100, stated, delta=0.3)
+        self.assertEqual(sum(kg is not None for _, kg in published.TABLE_3.values()), 6)
+
     def test_clusters(self):
         self.assertEqual(published.clusters_of(published.COW, 2904),
                          {"k-way": 32, "Lloyd": 30, "spectral": 14})
@@ -45,7 +56,7 @@ class Frames(unittest.TestCase):
                  "slices": [*units(40, 10, 8), {"frame_idx": 2, "bytes": 4}]},
                 {"first_frame": 3, "num_patches": 2, "vertices_of_frame": [self.FIRST, self.NONE],
                  "slices": units(60, 2)}]
-        rows = [{"frame": str(f), "psnr_db": db} for f, db in enumerate(("40", "41.5", "inf"))]
+        rows = [{"frame": str(f), "ramanathan_psnr_db": db} for f, db in enumerate(("40", "41.5", "inf"))]
         self.detail = frames.Detail({"num_vertices": 10, "gofs": gofs}, rows, "")
 
     def test_types_are_of_frames_with_motions(self):
@@ -64,18 +75,47 @@ class Frames(unittest.TestCase):
     def test_rows_of_all_frames(self):
         head, rows = frames.csv_rows({"x": self.detail})
         self.assertEqual(head, ["frame", "x_type_1", "x_type_2", "x_type_3", "x_ratio",
-                                "x_psnr_db"])
+                                "x_ramanathan_psnr_db"])
         self.assertEqual(rows[1], [1, 6, 3, 1, 12, 41.5])
         self.assertEqual(rows[4], [4, "", "", "", 60, ""])
 
 
+    def test_frames_are_divided_by_their_motion(self):
+        motion, ratios = [0.0, 1.0, 5.0, 2.0, 9.0], [(0, 99), (1, 10), (2, 20), (3, 14), (4, 30)]
+        self.assertEqual(frames.by_motion(motion, ratios), (12, 25))
+        self.assertEqual(frames.by_motion([0, 1, 1], [(0, 9), (1, 2), (2, 4)]), (None, 3))
+
+
 class Findings(unittest.TestCase):
-    def test_the_better_clustering_counts(self):
-        for best, words in ((1.042, "Holds"), (1.02, "Does not hold")):
-            found = findings.clustering_alone([("Lloyd", best), ("spectral", 0.9)])
-            self.assertTrue(found.startswith(f"{words}: clustering alone brings about 4 %"), found)
-            self.assertIn(f"Lloyd: {100 * best - 100:+.1f} %, spectral: -10.0 %", found)
-        self.assertTrue(findings.clustering_alone([("Lloyd", None)]).startswith("Not tested"))
+    def test_each_clustering_counts(self):
+        for gain, words in ((1.042, "Holds"), (1.02, "Does not hold")):
+            lloyd, spectral = findings.clustering_alone([("Lloyd", gain), ("spectral", 0.9)])
+            self.assertTrue(lloyd.startswith(f"{words}: Lloyd clustering alone brings about 4 %"), lloyd)
+            self.assertIn(f"{100 * gain - 100:+.1f} %", lloyd)
+            self.assertTrue(spectral.startswith("Does not hold: spectral clustering alone"), spectral)
+        self.assertTrue(findings.clustering_alone([("Lloyd", None)])[0].startswith("Not tested"))
+
+    def test_sizes_of_clusters(self):
+        swept = {"k-way": [(50, 8, 30.0), (100, 4, 40.0), (125, 3, 40.3), (200, 2, 20.0)],
+                 "Lloyd": [(50, 8, 30.0), (100, 4, 40.0), (125, 3, 39.0), (200, 2, None)]}
+        kway, lloyd = findings.best_sizes(swept)
+        self.assertEqual(kway, "Holds: clusters of 100 vertices are optimal for k-way, within 1 % of "
+                               "the best size (1 of 1; best with 125; with 100: -0.7 %).")
+        self.assertTrue(lloyd.startswith("Does not hold: clusters of 125 vertices"), lloyd)
+        self.assertIn("Not tested", findings.best_sizes({"Lloyd": [(125, 3, None)]})[0])
+
+    def test_motion(self):
+        found = {"k-way": (50.0, 30.0), "Lloyd": (50.5, 33.0), "spectral": (60.0, 31.0)}
+        fast, calm = findings.at_motion(found)
+        self.assertTrue(fast.startswith("Holds: where motion is large") and "(2 of 2; over k-way: "
+                        "+10.0 %, over spectral: +6.5 %)" in fast, fast)
+        self.assertTrue(calm.startswith("Holds") and "+1.0 %" in calm, calm)
+        found["Lloyd"] = (54.0, 30.5)
+        fast, calm = findings.at_motion(found)
+        self.assertTrue(fast.startswith("Does not hold") and "1 of 2" in fast, fast)
+        self.assertTrue(calm.startswith("Does not hold"), calm)
+        self.assertTrue(all(text.startswith("Not tested") for text in findings.at_motion(
+            dict.fromkeys(found, (None, None)))))
 
     def test_shares_of_the_paper_itself(self):
         self.assertEqual(findings.published_gains(published.COW),
@@ -109,6 +149,7 @@ class SmallRun(Reproduced):
             types = [float(table[name][f"type {i}"]) for i in (1, 2, 3)]
             self.assertAlmostEqual(sum(types), num_vertices, delta=0.2)
             self.assertAlmostEqual(float(table[name]["PSNR, dB"]), published.PSNR, delta=1)
+            self.assertLess(float(table[name]["KG, %"]), float(table[name]["KG of frames, %"]))
         self.assertEqual(table["no patches"]["type 1"], "-")
         found = self.rows("frames.csv")
         self.assertEqual([int(row["frame"]) for row in found], list(range(len(numbers))))
@@ -117,6 +158,15 @@ class SmallRun(Reproduced):
         clusters = {row["clustering"]: int(row["clusters"]) for row in self.rows("clusters.csv")}
         self.assertEqual(clusters["k-way"], 4)
         self.assertEqual(clusters["spectral"], 2)
+        self.assertEqual([row["vertices per cluster"] for row in self.rows("sizes.csv")],
+                         ["50", "100", "125", "200"])
+        self.assertTrue(any(row["k-way"] != "-" for row in self.rows("sizes.csv")))
+        for row in self.rows("motion.csv"):
+            self.assertGreater(float(row["little motion"]), 0)
+            self.assertGreater(float(row["much motion"]), 0)
+        self.assertEqual([len(self.rows(f"{name}.csv")) for name in (
+            "ranges", "algorithms", "thresholds")], [9, 10, 9])
+        self.assertEqual({row["CR"] for row in self.rows("ranges.csv")}, {"-"})  # no chicken
         self.expect_pages(["curves", "frames", "types", "quality", "partitions"])
 
 

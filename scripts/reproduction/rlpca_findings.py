@@ -56,6 +56,14 @@ def _of_frames(methods, settings):
     ]
 
 
+def at_equal_rates(errors, runs):
+    """Sentences on figure 6 (a). errors: of each frame; runs: at about the rate of RLPCA."""
+    return [rlpca.frame_by_frame(
+        f"in each frame, {better} has a smaller error than {worse} at about equal rates, N = "
+        f"{runs[better].clusters}, {runs[better].bpvf:.2f} and {runs[worse].bpvf:.2f} bpvf",
+        errors[better], errors[worse]) for better, worse in (("RLPCA", "LPCA"), ("ORLPCA", "RLPCA"))]
+
+
 def _ours(made):
     """Main and High against the best method of the paper."""
     items = []

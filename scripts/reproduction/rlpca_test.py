@@ -3,9 +3,13 @@
 
 import csv
 import math
+import pathlib
+import tempfile
 import unittest
 
-from reproduction_testing import INPUTS, Reproduced, main, runs
+from reproduction_testing import INPUTS, Reproduced, Tools, main, runs
+import models
+import not_reproduced
 import rlpca_claims as claims
 import rlpca_paths as paths
 import rlpca_published as published
@@ -22,9 +26,40 @@ class Published(unittest.TestCase):
         self.assertEqual(worse, [("cow", 30, 10), ("cow", 10, 10)])
         self.assertTrue(all(r.kg < r.cpca[1] for r in published.TABLE))
 
-    def test_models_are_known_by_their_size(self):
-        self.assertIs(published.model_of(2904, 204), published.COW)
-        self.assertIsNone(published.model_of(2904, 203))
+    def test_settings_of_the_table(self):
+        self.assertEqual(published.settings(), [(20, 20), (20, 10), (10, 10), (30, 20), (30, 10),
+                                                (20, 5), (10, 5)])
+
+
+class Models(unittest.TestCase):
+    def test_models_are_known_by_their_numbers(self):
+        self.assertIs(models.model_of(2904, 5804, 204, 1.467), models.COW)
+        self.assertIs(models.model_of(3030, 5664, 400, 6.27), models.CHICKEN)
+        self.assertIs(models.model_of(3029, 5664, 400, 6.28), models.CHICKEN)  # as printed once
+        self.assertIs(models.model_of(7061, 14118, 201, 1.2), models.DANCE)
+        self.assertIs(models.model_of(7061, 14118, 100, 1.2), models.DANCE)
+
+    def test_others_are_not(self):
+        for numbers in ((2904, 5804, 203, 1.467), (2904, 5805, 204, 1.467), (2904, 5804, 204, 1.0),
+                        (3028, 5664, 400, 6.28), (6179, 12337, 102, 1.0)):
+            self.assertIsNone(models.model_of(*numbers), numbers)
+
+    def test_what_is_known_of_a_model_is_said(self):
+        self.assertIn("ratio of both norms of its KG errors, 1.467.",
+                      models.how_recognised(models.COW))
+        self.assertIn("alone", models.how_recognised(models.DOLPHIN))
+
+    def test_polygons_are_triangles(self):
+        with tempfile.TemporaryDirectory() as folder:
+            mesh = pathlib.Path(folder, "a.obj")
+            mesh.write_text("v 0 0 0\nf 1 2 3\nf\t1/1 2/2 3/3 4/4\nfoo 1 2 3\n", encoding="utf-8")
+            self.assertEqual(models.count_triangles(mesh), 3)
+
+    def test_each_paper_says_what_it_leaves_out(self):
+        for paper in ("rlpca", "sslpc", "cobra", "registration"):
+            for sentence in not_reproduced.of(paper):
+                self.assertRegex(sentence, r"^[A-Z].*\.$")
+            self.assertGreater(len(not_reproduced.of(paper)), 3)
 
 
 class Claims(unittest.TestCase):
@@ -101,6 +136,7 @@ class Paths(unittest.TestCase):
 class SmallRun(Reproduced):
     def test_an_animation_of_the_user(self):
         mesh, points, frames = self.short_arm(20)
+        self.frames = frames
         done = self.reproduce("rlpca", "--quick", mesh, points)
         self.assertRegex(done.stdout, r"\n(Holds|Does not hold)")
         curves = self.rows("curves.csv")
@@ -122,12 +158,38 @@ class SmallRun(Reproduced):
         self.assertTrue(math.isfinite(float(first["local_x"])))
         with open(self.out / "table.csv", newline="", encoding="utf-8") as file:
             table = list(csv.reader(file))
-        self.assertEqual(len(table), 1 + len(published.TABLE))
-        self.assertTrue(all(row[0].endswith("(another sequence)") for row in table[1:]))
-        cow = [row for row in table if row[0].startswith("cow")]
-        self.assertTrue(all("-" not in row for row in cow))
-        self.expect_pages(["curves", "clusters", "frames", "frames_settings", "paths_world",
-                           "paths_local"])
+        self.check_table(table)
+        self.assertEqual(len(self.rows("frames_rate.csv")), 20)
+        self.expect_pages(["curves", "clusters", "frames", "frames_rate", "frames_settings",
+                           "paths_world", "paths_local"])
+
+    def check_table(self, table):
+        """Numbers that are measured stand in rows of this sequence alone, and those that are
+        published in rows of the paper's."""
+        head, *rows = table
+        first = head.index("our RLPCA bpvf")
+        self.assertEqual([row[:3] for row in rows],
+                         [["my arm", n, l] for n, l in (("30", "20"), ("30", "10"), ("10", "10"))])
+        for row in rows:
+            self.assertEqual(set(row[3:first]), {"-"})
+            self.assertNotIn("-", row[first:])
+            kg, of_frames = (float(row[i]) for i in (first + 1, first + 2))
+            self.assertAlmostEqual(of_frames / kg, self.norm(), delta=0.02)
+        text = (self.out / "table.md").read_text(encoding="utf-8")
+        published_rows = [line for line in text.splitlines()
+                          if line.startswith(("| cow", "| chicken", "| dolphin"))]
+        self.assertEqual(len(published_rows), len(published.TABLE))
+        self.assertTrue(all(line.count("|") == 12 for line in published_rows))
+        self.assertNotIn("another sequence)", text)
+
+    def norm(self):
+        """Both norms, from the point cache."""
+        frames = [list(zip(*[iter(frame)] * 3)) for frame in self.frames]
+        def spread(points):
+            mean = [sum(axis) / len(points) for axis in zip(*points)]
+            return sum(math.dist(p, mean) ** 2 for p in points)
+        return math.sqrt(spread([p for frame in frames for p in frame])
+                         / sum(map(spread, frames)))
 
     def test_other_formats(self):
         said = self.reproduce("--quick", INPUTS / "tulip.glb").stdout
@@ -141,8 +203,20 @@ class SmallRun(Reproduced):
         self.assertIn("nowhere.obj", self.reproduce("rlpca", "nowhere.obj", code=1).stderr)
         self.reproduce("--slow", code=64)
         done = self.reproduce(tools=self.folder, code=1)
-        self.assertEqual(done.stderr, f"reproduce: {self.folder}/rlpcenc: No such file or "
-                                      "directory; leave out --bin to have the tools built\n")
+        self.assertEqual(done.stderr, f"reproduce: {self.folder} has no rlpcenc, rlpcdec, rlpcinfo, "
+                                      "rlpccmp, plot_svg; leave out --bin to have them built\n")
+
+    def test_programs_that_are_not_built_are_named(self):
+        some, build = self.folder / "bin", self.folder / "CMakeCache.txt"
+        some.mkdir()
+        build.write_text("", encoding="utf-8")
+        for tool in ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp"):  # scripts/quickstart
+            (some / tool).symlink_to(Tools.folder / tool)
+        for paper, missing in (("rlpca", "plot_svg"), ("sslpc", "plot_svg peer_codec"),
+                               ("cobra", "plot_svg cobra_basis")):
+            said = self.reproduce(paper, tools=some, code=1).stderr
+            self.assertIn(f"{some} has no {missing.replace(' ', ', ')}; run `cmake ", said)
+            self.assertIn(f"--target {missing}`", said)
 
 
 if __name__ == "__main__":

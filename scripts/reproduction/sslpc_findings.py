@@ -18,9 +18,8 @@ def layer_growth(layers, count):
                           sum(abs(g - published.GROWTH) <= NEAR for g in found), len(found), more)
 
 
-def against_cow(layers):
+def against_published(layers, theirs):
     """Our layers and those that the paper has for the same mesh."""
-    theirs = published.COW.layers
     pairs = zip(layers[1 - len(theirs):], theirs[1:])
     return ("Vertices of the finest layers, ours and published: "
             + ", ".join(f"{ours} and {known}" for ours, known in pairs)
@@ -28,11 +27,11 @@ def against_cow(layers):
               f"has {theirs[0]}.")
 
 
-def large_errors(name, least, runs, flat):
-    """The gain over a flat coder, in per cent, at large errors."""
-    found = [(kg, 1 / ratio) for kg, ratio in claims.ratios(flat, runs) if kg >= published.LARGE]
+def large_errors(name, least, runs, flat, large):
+    """The gain over a flat coder, in per cent, at errors above `large`."""
+    found = [(kg, 1 / ratio) for kg, ratio in claims.ratios(flat, runs) if kg >= large]
     more = ", ".join(f"KG {kg:.2g} %: {claims.percent(ratio)}" for kg, ratio in found)
-    return claims.counted(f"at KG errors above {published.LARGE:g} %, {name} takes over {least} % "
+    return claims.counted(f"at KG errors above {large:g} %, {name} takes over {least} % "
                           f"fewer bits than a flat predictive coder, here {FLAT}",
                           sum(ratio < 1 - least / 100 for _, ratio in found), len(found), more)
 
@@ -60,13 +59,13 @@ def real_time(sequence, runs):
 
 def headers(made):
     """What the overhead of spatial layers consists of."""
-    one, many = (made.bench.info(made.settings("SSLPC", published.LOSSLESS, more))
-                 for more in ((), ["--layer-groups", made.NUM_LAYERS]))
+    one, many = (made.bench.info(made.settings("SSLPC", made.lossless, more))
+                 for more in ((), ["--layer-groups", made.num_layers]))
     name = "unit headers and CRCs"
     extra, of_headers = (8 * (many["bytes"] - one["bytes"]), many["bits"][name] - one["bits"][name])
     share = extra / 8 / one["bytes"]
-    return (f"{made.NUM_LAYERS} spatial layers take {100 * share:.1f} % more bits at KG error "
-            f"{published.LOSSLESS} %, {100 * of_headers / extra:.0f} % of them in {name}.")
+    return (f"{made.num_layers} spatial layers take {100 * share:.1f} % more bits at KG error "
+            f"{made.lossless} %, {100 * of_headers / extra:.0f} % of them in {name}.")
 
 
 def _ours(curves):
@@ -80,26 +79,26 @@ def _ours(curves):
 def claims_of_paper(made, layers):
     """Sentences. layers: vertices of each."""
     curves, scalable = made.curves, made.scalable
-    items = [layer_growth(layers, made.NUM_LAYERS - 1)]
-    if made.is_cow:
-        items.append(against_cow(layers))
+    items = [layer_growth(layers, made.num_layers - 1)]
+    if made.is_known:
+        items.append(against_published(layers, made.known.layers))
     items += [
         claims.every_error("STSLPC takes fewer bits than SSLPC at every error", curves["STSLPC"],
                            curves["SSLPC"]),
         grows("the gain of STSLPC over SSLPC grows with the error", curves["STSLPC"],
               curves["SSLPC"]),
-        large_errors("SSLPC", 10, curves["SSLPC"], curves[FLAT]),
-        large_errors("STSLPC", 16, curves["STSLPC"], curves[FLAT]),
+        large_errors("SSLPC", 10, curves["SSLPC"], curves[FLAT], made.known.large),
+        large_errors("STSLPC", 16, curves["STSLPC"], curves[FLAT], made.known.large),
     ]
     items += [claims.every_error(f"scalability has no overhead, 1 % at most: {name}",
                                  scalable[name], scalable[name.split(",")[0]], claims.NEGLIGIBLE)
-              for name in made.SCALABLE]
+              for name in made.variants]
     items.append(claims.every_error(
         "scalability in time has no overhead: STSLPC, 2 temporal layers, against SSLPC",
         scalable["STSLPC, 2 temporal layers"], scalable["SSLPC"]))
     items.append(headers(made))
-    if made.is_cow:
-        points = [(kg, bpvf) for bpvf, kg in published.CPCA]
+    points = [(kg, bpvf) for bpvf, kg in published.cpca(made.model)]
+    if points:
         items += [claims.at_published_errors(f"{name} takes fewer bits than CPCA as published",
                                              curves[name], points) for name in ("SSLPC", "STSLPC")]
     return [*items, real_time(made.sequence, curves["SSLPC"]), *_ours(curves)]

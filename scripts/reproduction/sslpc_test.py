@@ -4,6 +4,7 @@
 import unittest
 
 from reproduction_testing import Reproduced, main, runs
+import models
 import sslpc_findings as findings
 import sslpc_published as published
 import temporal_cuts
@@ -18,8 +19,17 @@ class Published(unittest.TestCase):
         self.assertEqual([round(100 * g, 1) for g in published.CHICKEN.growth[1:]],
                          [32.4, 39.4, 37.6, 37.0, 39.9, 38.7, 41.0])
 
-    def test_large_errors(self):
-        self.assertAlmostEqual(published.LARGE, 0.6)
+    def test_errors_are_those_of_each_sequence(self):
+        self.assertAlmostEqual(published.COW.large, 0.6)
+        self.assertEqual((published.CHICKEN.lossless, published.CHICKEN.large), (0.02, 0.08))
+        self.assertIs(published.decomposition_of(models.CHICKEN), published.CHICKEN)
+        self.assertIs(published.decomposition_of(None), published.COW)
+
+    def test_points_of_cpca_are_of_the_same_sequence(self):
+        self.assertEqual(published.cpca(models.CHICKEN), ((4.7, 0.076), (2.8, 0.139)))
+        self.assertEqual(published.cpca(models.COW), ((7.4, 0.16), (3.8, 0.5), (2.0, 1.47)))
+        for other in (None, models.DOLPHIN, models.FACE):
+            self.assertEqual(published.cpca(other), ())
 
 
 class Findings(unittest.TestCase):
@@ -31,7 +41,7 @@ class Findings(unittest.TestCase):
                          "points, the finest 3 (2 of 3; 38.0 %, 37.7 %, 100.0 %).")
 
     def test_layers_of_the_cow(self):
-        self.assertEqual(findings.against_cow([5, 9, 1, 2, 3, 4, 6]),
+        self.assertEqual(findings.against_published([5, 9, 1, 2, 3, 4, 6], published.COW.layers),
                          "Vertices of the finest layers, ours and published: 1 and 225, 2 and 290, "
                          "3 and 423, 4 and 554, 6 and 819; ours go on to a base of 5 in 7 layers, "
                          "that of the paper has 593.")
@@ -39,7 +49,8 @@ class Findings(unittest.TestCase):
     def test_large_errors(self):
         flat = runs(self.COARSE, self.FINE)
         for rate, words in ((0.8, "Holds"), (0.85, "Does not hold")):
-            found = findings.large_errors("X", 16, runs((1, rate, 1.0), (1, 1.0, 0.1)), flat)
+            found = findings.large_errors("X", 16, runs((1, rate, 1.0), (1, 1.0, 0.1)), flat,
+                                          0.6)
             self.assertIn(f"{words}: at KG errors above 0.6 %, X takes over 16 % fewer bits", found)
             self.assertIn(f"1 of 1; KG 1 %: {100 * rate - 100:.0f} %" if words == "Holds" else
                           "0 of 1", found)

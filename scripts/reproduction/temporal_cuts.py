@@ -57,7 +57,7 @@ class Cut:
     layers: int  # kept
     num_frames: int
     bytes: int
-    kg: float  # of its frames
+    kg: float  # of its frames, relative to one mean of them
     alone: int  # bytes of a stream of the same frames alone, with this error
 
 
@@ -67,8 +67,8 @@ class TemporalCuts:
     def __init__(self, bench, settings):
         self.bench, self.settings = bench, settings
 
-    def _size(self, bench, kg, options):
-        settings = [*self.settings, "--kg", f"{kg:.6g}", *options]
+    def _size(self, bench, target, options):
+        settings = [*self.settings, *target, *options]
         return bench.encode(settings, lambda stream, *_: stream.stat().st_size)
 
     def _cut(self, stream, order, layers, frames):
@@ -85,17 +85,19 @@ class TemporalCuts:
             found, _ = self.bench.call(
                 "rlpccmp", mesh, "--points-a", alone, decoded.with_suffix(".obj"), "--points-b",
                 kept, "--order-map", order, "--json", "--quiet")
-            kg = json.loads(found)["metrics"]["kg_error_percent"]
+            metrics = json.loads(found)["metrics"]
+            kg = metrics["kg_sequence_error_percent"]
+            target = ["--kg", f"{metrics['kg_error_percent']:.6g}"]
             bench = Bench(self.bench.tools, measure.open_sequence(mesh, alone), folder)
-            size = self._size(bench, kg, pattern(PERIOD >> (LAYERS - layers)))
+            size = self._size(bench, target, pattern(PERIOD >> (LAYERS - layers)))
             return Cut(layers, len(frames), cut.stat().st_size, kg, size)
 
     def run(self, kg):
         """(bytes in one layer, bytes in LAYERS, [Cut])."""
         kept = frames_of(self.bench.sequence.num_frames, LAYERS)
-        one = self._size(self.bench, kg, pattern(PERIOD))
-        layered = [*self.settings, "--kg", f"{kg:.6g}", *pattern(PERIOD), "--temporal-layers",
-                   LAYERS]
+        target = self.bench.target(kg)
+        one = self._size(self.bench, target, pattern(PERIOD))
+        layered = [*self.settings, *target, *pattern(PERIOD), "--temporal-layers", LAYERS]
         def use(stream, order, _):
             return stream.stat().st_size, [self._cut(stream, order, layers, kept[layers - 1])
                                            for layers in range(1, LAYERS)]
