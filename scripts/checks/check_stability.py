@@ -31,6 +31,10 @@ BASELINE = ("--kg 0.3", "--kg 1 --preset fast --gof 20 --keep-order --hash frame
 MAIN = ("--profile main --kg 0.3",
         "--profile main --kg 1 --preset fast --gof 20 --keep-order --hash frame",
         "--profile main --bpvf 1.5 --preset fast --gof 40 --bones 4")
+HIGH = ("--profile high --kg 0.3",
+        "--profile high --kg 1 --preset fast --gof 20 --keep-order --hash frame",
+        "--profile high --kg 0.3 --gof-kind frames --preset fast",
+        "--profile high --max-error 0.01 --low-delay --keep-order")
 
 
 def released(root):
@@ -81,8 +85,8 @@ def encoder_digests(root, bin_folder):
     with tempfile.TemporaryDirectory(prefix="rlpc-stability-") as folder:
         out = pathlib.Path(folder, "a.rlpc")
         for mesh in sorted((root / "streams" / "inputs").glob("*.obj")):
-            for setting in BASELINE + MAIN:
-                profile = () if setting in MAIN else ("--profile", "baseline")
+            for setting in BASELINE + MAIN + HIGH:
+                profile = () if setting in MAIN + HIGH else ("--profile", "baseline")
                 subprocess.run([bin_folder / "rlpcenc", mesh, "--points", mesh.with_suffix(".pc2"),
                                 "-o", out, *profile, *setting.split()], check=True,
                                capture_output=True)
