@@ -25,7 +25,7 @@ export function addControls(player) {
   for (const [id, action] of Object.entries(actions)) $(id).onclick = action;
   $("speed").append(...kSpeeds.map((speed) => new Option(`${speed}×`, speed, speed === 1, speed === 1)));
   $("speed").onchange = () => changeSpeed(0);
-  $("clip").onchange = () => player.chooseClip($("clip").value);
+  $("clip").onchange = () => player.chooseClip(player.session.decoder.clips[$("clip").value]);
   $("slider").oninput = () => player.seek(Number($("slider").value));
   addKeys(player, actions, changeSpeed);
   addFiles(player);
@@ -65,11 +65,11 @@ function addFiles(player) {
   };
 }
 
-/** The list of clips, where there are any. */
+/** The list of clips, where there are any. Clips may have the same name: values are indices. */
 export function showClips(clips) {
   $("clip").hidden = clips.length === 0;
   $("clip").replaceChildren(new Option("All clips", ""),
-    ...clips.map(({ name }) => new Option(name, name)));
+    ...clips.map(({ name }, index) => new Option(name, index)));
 }
 
 export function showToggles({ wire, flat, viewer, deviation, isChecking, up }) {

@@ -82,7 +82,7 @@ class Player {
     this.playback.setSpeed(Number($("speed").value));
     document.body.dataset.state = "ready"; // what is said ends with the first frame
     this.setWire(Math.max(0, kWireModes.indexOf(wanted.get("wire"))));
-    this.chooseClip(wanted.get("clip") ?? "");
+    this.chooseClip(session.decoder.clips.find(({ name }) => name === wanted.get("clip")));
     this.showToggles();
     if (wanted.has("frame")) this.seek(first);
     else this.setPlaying(true);
@@ -220,11 +220,10 @@ class Player {
     this.playback.seek(Number.isInteger(frame) ? frame : this.playback.first);
   }
 
-  /** Plays a clip in a loop; all frames if there is none of the name. */
-  chooseClip(name) {
-    const clip = this.session.decoder.clips.find((one) => one.name === name);
+  /** Plays a clip in a loop; undefined: all frames. */
+  chooseClip(clip) {
     const { firstFrame: first, frames: count } = clip ?? { firstFrame: 0, frames: this.info.frames };
-    $("clip").value = clip?.name ?? "";
+    $("clip").value = clip ? this.session.decoder.clips.indexOf(clip) : "";
     this.playback.setRange(first, count);
     Object.assign($("slider"), { min: first, max: first + count - 1 });
     $("slider").disabled = $("play").disabled = count === 1;

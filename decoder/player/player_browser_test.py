@@ -409,15 +409,17 @@ class Browser(InBrowser):
 
     def test_clips(self):
         stream = self.encode("clips.rlpc", "--gof", "20", "--clip", "Walk:10-19", "--clip",
-                             "<b>&:30-34")
+                             "<b>&:30-34", "--clip", "Walk:40-49")
         self.open(stream, "clip=Walk")
         self.browser.wait_for("player.shownFrame > 14")
         self.browser.wait_for("player.shownFrame < 14")  # it starts again
         self.assertEqual(self.browser.evaluate("[slider.min, slider.max]"), ["10", "19"])
         self.assertIn("9", self.text("clock"))
         self.assertEqual(self.browser.evaluate("[...clip.options].map((one) => one.text)"),
-                         ["All clips", "Walk", "<b>&"])
-        self.browser.evaluate("clip.value = '<b>&'; clip.dispatchEvent(new Event('change'))")
+                         ["All clips", "Walk", "<b>&", "Walk"])
+        self.browser.evaluate("clip.value = '2'; clip.dispatchEvent(new Event('change'))")
+        self.browser.wait_for("player.shownFrame > 45")  # the other of this name
+        self.browser.evaluate("clip.value = '1'; clip.dispatchEvent(new Event('change'))")
         self.browser.wait_for("player.shownFrame === 34")
         self.browser.press("Home")
         self.browser.press(" ")

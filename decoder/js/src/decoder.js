@@ -1,4 +1,5 @@
 // RlpcDecoder: frames of a stream in any order, as typed arrays. index.d.ts describes it.
+import { clipSeconds } from "./clip_time.js";
 import { aborted, closed, unpacked } from "./error.js";
 import { Link } from "./link.js";
 import { describeSource } from "./sources.js";
@@ -27,9 +28,10 @@ function parsedMetadata(text) {
 }
 
 /** Clips with the frames that the stream has; those of streams of unknown length may claim more. */
-function withinStream(clips, frames) {
+function withinStream(clips, frames, frameRate) {
   return clips.map((clip) => ({ ...clip, frames: Math.min(clip.frames, frames - clip.firstFrame) }))
-    .filter((clip) => clip.frames > 0);
+    .filter((clip) => clip.frames > 0)
+    .map((clip) => ({ ...clip, duration: clipSeconds(clip.frames, frameRate) }));
 }
 
 function byName(sets) {
@@ -79,7 +81,7 @@ export class RlpcDecoder {
       triangles: header.num_triangles,
       frames: header.num_frames,
       frameRate: rate,
-      duration: header.num_frames / rate,
+      duration: clipSeconds(header.num_frames, rate),
       profile: kProfiles[header.profile_idc],
       level: header.level_idc,
       layers: header.num_layers,
@@ -93,7 +95,7 @@ export class RlpcDecoder {
     this.gridStep = 2 ** header.grid_log2_step;
     this.indices = indices;
     this.coarseVertices = coarseVertices;
-    this.clips = withinStream(header.clips, header.num_frames);
+    this.clips = withinStream(header.clips, header.num_frames, rate);
     this.metadata = metadata ?? null;
     const half = 2 ** (header.position_bits - 1);
     this.bounds = this.#box([-half, -half, -half, half - 1, half - 1, half - 1]);

@@ -6,10 +6,14 @@ export interface Bounds {
 
 /** A named part of the sequence. */
 export interface Clip {
+  /** Clips may have the same name. */
   name: string;
   firstFrame: number;
   /** How many frames it has. */
   frames: number;
+  /** Seconds from its first frame to its last, (frames - 1) / frameRate: the first pose is that of
+   * its start and the last one that of its end, as keys of glTF are. */
+  duration: number;
 }
 
 export interface StreamInfo {
@@ -19,7 +23,7 @@ export interface StreamInfo {
   readonly frames: number;
   /** Frames per second. */
   readonly frameRate: number;
-  /** Seconds. */
+  /** Seconds from the first frame to the last, (frames - 1) / frameRate. */
   readonly duration: number;
   readonly profile: "Baseline" | "Main" | "High";
   readonly level: number;
@@ -230,8 +234,10 @@ export class RlpcError extends Error {
 
 export type PlaybackLoop = "repeat" | "once" | "pingpong";
 
-/** Which frame is shown when. Every frame is decoded and none is left out: if decoding is too
- * slow, time passes more slowly. */
+/** Which frame is shown when: the one that is nearest in time. A range of n frames takes n - 1
+ * intervals from its first frame to its last; where it repeats, its end is the start of the next
+ * turn, so that a loop whose last pose is its first does not halt. Every frame is decoded and none
+ * is left out: if decoding is too slow, time passes more slowly. */
 export class Playback<F = Frame> {
   constructor(options: {
     frames: number;
@@ -248,8 +254,10 @@ export class Playback<F = Frame> {
   readonly loop: PlaybackLoop;
   /** The frame that is shown, or will be as soon as it is decoded. */
   readonly frame: number;
-  /** Seconds from the start of the range. */
+  /** Seconds from the start of the range, also between frames. */
   readonly seconds: number;
+  /** Seconds from the start of the range to its end. */
+  readonly duration: number;
   /** Called at the end of a range that is played once. */
   finished: () => void;
   /** Plays these frames, from the first. */
@@ -260,6 +268,8 @@ export class Playback<F = Frame> {
   play(): void;
   pause(): void;
   seek(frame: number): void;
+  /** To the time from the start of the range; to its end, where that comes before. */
+  seekSeconds(seconds: number): void;
   /** Ends all requests. */
   cancel(): void;
   /** Lets time pass. Returns what is to be shown now, if that is new; without a frame if it

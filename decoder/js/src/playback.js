@@ -2,10 +2,12 @@
 // slow, time passes more slowly.
 //
 // Frames are counted in steps from the start of the range that is played, so that loops, and
-// playing backwards, need no cases of their own.
+// playing backwards, need no cases of their own; clip_time.js says when a step begins.
+import { clipSeconds, nearestFrame, placeAt, startOfStep } from "./clip_time.js";
 import { aborted } from "./error.js";
 
 const kInFlight = 2; // one is decoded while another travels
+const kShortOf = 0.001; // intervals, where time waits for a frame
 
 export const kLoops = ["repeat", "once", "pingpong"];
 
@@ -33,16 +35,16 @@ export class Playback {
 
   setSpeed(speed) {
     const turns = speed < 0 !== this.speed < 0;
-    const { frame } = this;
+    const { seconds } = this;
     this.speed = speed;
-    if (turns) this.seek(frame);
+    if (turns) this.seekSeconds(seconds);
   }
 
   setLoop(loop) {
     if (!kLoops.includes(loop)) throw new RangeError(`loop is one of ${kLoops.join(", ")}`);
-    const { frame } = this;
+    const { seconds } = this;
     this.loop = loop;
-    this.seek(frame);
+    this.seekSeconds(seconds);
   }
 
   /** The frame that is shown, or will be as soon as it is decoded. */
@@ -50,9 +52,18 @@ export class Playback {
     return this.indexAt(this.current);
   }
 
-  /** Seconds from the start of the range. */
+  /** Seconds from the start of the range to its end. */
+  get duration() {
+    return clipSeconds(this.count, this.frameRate);
+  }
+
+  /** Seconds from the start of the range, also between frames. */
   get seconds() {
-    return (this.frame - this.first) / this.frameRate;
+    const { count, current, loop, time } = this;
+    // The end of a turn is the start of the next: which of them it is, the frame says.
+    const place = loop === "repeat" ? time - Math.floor(current / count) * (count - 1)
+                                    : placeAt(time, count, loop);
+    return (this.speed < 0 ? count - 1 - place : place) / this.frameRate;
   }
 
   /** The index of the frame of a step. */
@@ -74,27 +85,41 @@ export class Playback {
     return this.isShown || this.ready.has(this.current);
   }
 
+  /** Whether the last frame is shown, and no other follows. */
   get isAtEnd() {
     return this.loop === "once" && this.current >= this.count - 1;
+  }
+
+  get hasEnded() {
+    return this.isAtEnd && this.time >= this.count - 1;
   }
 
   /** A still mesh does not play. What has ended starts again. */
   play() {
     this.playing = this.count > 1;
-    if (this.playing && this.isAtEnd) this.setRange(this.first, this.count);
+    if (this.playing && this.hasEnded) this.setRange(this.first, this.count);
     this.pump();
   }
 
   pause() {
     this.playing = false;
-    this.time = this.current;
   }
 
   /** To a frame of the sequence, or the nearest in the range. */
   seek(index) {
-    const place = Math.min(Math.max(index - this.first, 0), this.count - 1);
-    this.current = this.speed < 0 ? this.count - 1 - place : place;
-    this.time = this.current; // in steps
+    this.goTo(index - this.first);
+  }
+
+  /** To a time from the start of the range, or the nearest within it. */
+  seekSeconds(seconds) {
+    this.goTo(seconds * this.frameRate);
+  }
+
+  goTo(wanted) {
+    const last = this.count - 1;
+    const place = Math.min(Math.max(wanted, 0), last);
+    this.time = this.speed < 0 ? last - place : place; // in intervals
+    this.current = nearestFrame(this.time); // the step
     this.next = this.current; // to be asked for
     this.isShown = false;
     this.cancel();
@@ -149,19 +174,26 @@ export class Playback {
   /** Lets time pass. Returns { index, frame } to show now, if that is new; without a frame if it
    * cannot be decoded. */
   tick(seconds) {
-    if (!this.isShown) return this.take(this.current);
-    if (!this.playing) return undefined;
     let shown;
+    if (!this.isShown) {
+      shown = this.take(this.current);
+      this.pump();
+      return shown;
+    }
+    if (!this.playing) return undefined;
     this.time += seconds * this.frameRate * Math.abs(this.speed);
-    while (Math.floor(this.time) > this.current && !this.isAtEnd) {
+    while (!this.isAtEnd) {
+      const next = startOfStep(this.current + 1, this.count, this.loop);
+      if (next > this.time) break;
       if (!this.ready.has(this.current + 1)) {
-        this.time = this.current + 0.999;
+        this.time = next - kShortOf;
         break;
       }
       if (shown?.frame) this.discard(shown.frame);
       shown = this.take(++this.current);
     }
-    if (this.isAtEnd && this.time >= this.count) {
+    if (this.hasEnded) {
+      this.time = this.count - 1;
       this.pause();
       this.finished();
     }

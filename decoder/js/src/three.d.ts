@@ -52,21 +52,23 @@ export class RLPCMesh extends Mesh<BufferGeometry, Material | Material[], RLPCMe
   readonly playing: boolean;
   /** Index of the frame that is shown. */
   readonly frame: number;
-  /** Seconds from the start of the clip; can be set. The frame is shown by the first update() after
-   * it has been decoded. */
+  /** Seconds from the start of the clip; can be set. The frame that is nearest in time is shown by
+   * the first update() after it has been decoded. */
   time: number;
   /** Sets `time`, and resolves once its frame is shown, or that of a later seek, or once it could not
    * be decoded, of which an event tells. Rejects with an AbortError after dispose(). */
   seek(seconds: number): Promise<void>;
-  /** Seconds that the clip takes at speed 1. */
+  /** Seconds that the clip takes at speed 1, from its first frame to its last: n frames take
+   * (n - 1) / frameRate. Where it repeats, its end is the start of the next turn. */
   readonly duration: number;
   /** Usually 1; below 0, it plays backwards. */
   speed: number;
   /** Usually LoopRepeat. */
   loop: AnimationActionLoopStyles;
 
-  /** Goes on; with the name of a clip, or null for the whole sequence, plays that from its start. */
-  play(name?: string | null): this;
+  /** Goes on; with a clip or the name of one, or null for the whole sequence, plays that from its
+   * start. A name that several clips have is that of the first. */
+  play(clip?: string | Clip | null): this;
   pause(): this;
   /** Back to the start. */
   stop(): this;

@@ -105,8 +105,7 @@ export class RLPCMesh extends Mesh {
   }
 
   set time(seconds) {
-    const { first, frameRate } = this.#playback;
-    this.#playback.seek(first + Math.floor(seconds * frameRate + 1e-6));
+    this.#playback.seekSeconds(seconds);
   }
 
   /** Sets time, and resolves once its frame is shown, or that of a later seek. */
@@ -126,7 +125,7 @@ export class RLPCMesh extends Mesh {
   }
 
   get duration() {
-    return this.#playback.count / this.#playback.frameRate;
+    return this.#playback.duration;
   }
 
   get speed() {
@@ -148,19 +147,24 @@ export class RLPCMesh extends Mesh {
     this.#playback.setLoop(kLoopNames.get(loop));
   }
 
-  /** Goes on; with the name of a clip, or null for the whole sequence, plays that from its start. */
-  play(name) {
-    if (name !== undefined) this.#choose(name);
+  /** Goes on; with a clip, the name of one, or null for the whole sequence, plays that from its
+   * start. */
+  play(clip) {
+    if (clip !== undefined) this.#choose(this.#found(clip));
     this.#playback.play();
     return this;
   }
 
-  #choose(name) {
-    const clip = name === null ? null : this.clips.find((one) => one.name === name);
-    if (clip === undefined) {
-      const names = this.clips.map((one) => `"${one.name}"`).join(", ");
-      throw new RangeError(`no clip "${name}"; there are ${names || "none"}`);
-    }
+  /** Of several clips with a name, the first. */
+  #found(wanted) {
+    if (wanted === null || this.clips.includes(wanted)) return wanted;
+    const clip = this.clips.find(({ name }) => name === wanted);
+    if (clip) return clip;
+    const names = this.clips.map(({ name }) => `"${name}"`).join(", ");
+    throw new RangeError(`no clip "${wanted?.name ?? wanted}"; there are ${names || "none"}`);
+  }
+
+  #choose(clip) {
     this.#clip = clip;
     this.#playback.setRange(clip?.firstFrame ?? 0, clip?.frames ?? this.#decoder.info.frames);
   }
@@ -173,7 +177,7 @@ export class RLPCMesh extends Mesh {
   /** Back to the start. */
   stop() {
     this.pause();
-    this.#choose(this.#clip?.name ?? null);
+    this.#choose(this.#clip);
     return this;
   }
 

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { clipSeconds, nearestFrame, placeAt } from "../src/clip_time.js";
 import { Playback } from "../src/playback.js";
 
 /** Answers requests `delay` ticks later; 10 frames a second, a tick is 50 ms. */
@@ -166,4 +167,128 @@ test("AStillMeshIsShownOnceAndDoesNotPlay", async () => {
   assert.deepEqual(bench.shown, [0]);
   assert.equal(bench.playback.frame, 0);
   assert.equal(bench.numAsked, 1);
+});
+
+/** Frames are there as soon as they are asked for, like those of a fast decoder. */
+function playing(count, frameRate, loop) {
+  const playback = new Playback({ frames: count, frameRate, ahead: 8,
+    request: (index) => Promise.resolve({ index }) });
+  playback.setLoop(loop);
+  playback.play();
+  return playback;
+}
+
+const settled = () => new Promise((next) => setImmediate(next));
+
+/** How long each frame is shown, in intervals, by how often it is on pictures of `fine` an interval. */
+async function shares(playback, intervals, fine) {
+  const shares = new Map();
+  await settled();
+  for (let i = 0; i < intervals * fine; ++i) {
+    playback.tick(i === 0 ? 0 : 1 / (fine * playback.frameRate));
+    await settled();
+    shares.set(playback.frame, (shares.get(playback.frame) ?? 0) + 1 / fine);
+  }
+  return shares;
+}
+
+test("ALoopLastsOneIntervalLessThanItsFrames", async () => {
+  const turns = 3;
+  const last = 10; // the same pose as 0: the two of them together take one interval
+  const shown = await shares(playing(last + 1, 32, "repeat"), turns * last, 64);
+  for (let k = 1; k < last; ++k) assert.ok(Math.abs(shown.get(k) - turns) < 0.1, `${k}`);
+  assert.ok(Math.abs(shown.get(0) + shown.get(last) - turns) < 0.1);
+});
+
+test("TheLastPoseIsThatOfTheEnd", async () => {
+  const playback = playing(11, 32, "once");
+  let ends = 0;
+  playback.finished = () => ++ends;
+  await settled();
+  for (let i = 0; i < 10 * 64 + 1; ++i) {
+    assert.equal(ends, 0);
+    playback.tick(i === 0 ? 0 : 1 / (64 * 32));
+    await settled();
+  }
+  assert.equal(ends, 1);
+  assert.deepEqual([playback.frame, playback.seconds], [10, playback.duration]);
+  assert.equal(playback.duration, 10 / 32);
+});
+
+/** A generator of numbers below n. */
+function random(seed) {
+  let state = seed;
+  return (n) => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return Math.floor((state / 2 ** 32) * n);
+  };
+}
+
+// What three's AnimationAction makes of a clip that lasts (n - 1) / frameRate.
+function timeInClip(seconds, duration, loop) {
+  if (loop === "once") return Math.min(seconds, duration);
+  const turn = Math.floor(seconds / duration);
+  const within = seconds - turn * duration;
+  return loop === "pingpong" && turn % 2 === 1 ? duration - within : within;
+}
+
+test("PlacesAreThoseOfAnAnimationOfTheSameDuration", () => {
+  const below = random(1);
+  for (let i = 0; i < 10000; ++i) {
+    const frames = 2 + below(200);
+    const frameRate = [24, 25, 30, 60, 30000 / 1001, 12.5][below(6)];
+    const loop = ["repeat", "once", "pingpong"][below(3)];
+    const seconds = below(1e6) / 1e4;
+    const duration = clipSeconds(frames, frameRate);
+    assert.ok(Math.abs(duration * frameRate - frames + 1) < 1e-9);
+    const place = placeAt(seconds * frameRate, frames, loop);
+    assert.ok(place >= 0 && place <= frames - 1);
+    const difference = Math.abs(place - timeInClip(seconds, duration, loop) * frameRate);
+    assert.ok(difference < 1e-6 || (loop === "repeat" && difference > frames - 1 - 1e-6), `${difference}`);
+  }
+  assert.equal(placeAt(7.5, 1, "repeat"), 0);
+});
+
+for (const loop of ["repeat", "once", "pingpong"]) {
+  test(`ShowsTheNearestFrameHoweverPicturesCome (${loop})`, async () => {
+    const below = random(7);
+    for (let i = 0; i < 30; ++i) {
+      const count = 2 + below(9);
+      const frameRate = [24, 25, 30, 60][below(4)];
+      const playback = playing(count, frameRate, loop);
+      let seconds = 0;
+      await settled();
+      playback.tick(0);
+      await settled();
+      for (let j = 0; j < 60; ++j) {
+        const delta = below(1000) / 2000 / frameRate; // one frame at most, so that none is late
+        playback.tick(delta);
+        await settled();
+        seconds += delta;
+        const place = timeInClip(seconds, (count - 1) / frameRate, loop) * frameRate;
+        const off = Math.abs(place - playback.frame);
+        const wrapped = loop === "repeat" ? count - 1 - off : off; // the end is the start
+        assert.ok(Math.min(off, wrapped) <= 0.5 + 1e-6, `${place} ${playback.frame}`);
+        assert.ok(Math.abs(playback.seconds * frameRate - place) < 1e-6 ||
+                  Math.abs(count - 1 - Math.abs(playback.seconds * frameRate - place)) < 1e-6);
+      }
+    }
+  });
+}
+
+test("SeekingToATimeShowsTheNearestFrameAndKeepsTheTime", () => {
+  const playback = new Playback({ frames: 100, frameRate: 10, request: () => new Promise(() => {}) });
+  playback.setRange(20, 11);
+  for (const [seconds, frame] of [[0, 20], [0.04, 20], [0.06, 21], [0.5, 25], [1, 30]]) {
+    playback.seekSeconds(seconds);
+    assert.equal(playback.frame, frame);
+    assert.ok(Math.abs(playback.seconds - seconds) < 1e-9);
+  }
+  playback.seekSeconds(7);
+  assert.deepEqual([playback.frame, playback.seconds], [30, 1]);
+  playback.seekSeconds(-7);
+  assert.deepEqual([playback.frame, playback.seconds], [20, 0]);
+  playback.seekSeconds(0.3);
+  playback.setSpeed(-1);
+  assert.deepEqual([playback.frame, nearestFrame(10 * playback.seconds)], [23, 3]);
 });

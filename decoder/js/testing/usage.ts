@@ -44,6 +44,7 @@ export async function show(scene: Scene, file: File): Promise<RLPCMesh> {
   mesh.speed = -1;
   mesh.addEventListener("finished", ({ clip }) => console.log(clip?.name));
   mesh.play("Run").update(0.1);
+  mesh.play(mesh.clips.find((clip) => clip.duration > 1) ?? null);
   scene.add(mesh, await loader.open(file));
   mesh.dispose();
   return mesh;
