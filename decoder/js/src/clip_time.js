@@ -26,6 +26,12 @@ export function nearestFrame(place) {
   return Math.floor(place + 0.5);
 }
 
+/** When the frame of a step is exact, in intervals: the last of a turn of "repeat" at the same time as
+ * the first of the next. */
+export function timeOfStep(step, frames, loop) {
+  return loop === "repeat" ? step - Math.floor(step / frames) : step;
+}
+
 /** When the nearest frame becomes the one of a step, in intervals. Steps count frames as they are
  * shown: all of them in each turn of "repeat"; forth and back without either end twice in
  * "pingpong". */

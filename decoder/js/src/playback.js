@@ -3,23 +3,29 @@
 //
 // Frames are counted in steps from the start of the range that is played, so that loops, and
 // playing backwards, need no cases of their own; clip_time.js says when a step begins.
-import { clipSeconds, nearestFrame, placeAt, startOfStep } from "./clip_time.js";
+//
+// If it interpolates, a step begins where its frame is exact, and `following` and `fraction` are
+// what to show until the next one begins. Time then waits at a frame until the next is there.
+import { clipSeconds, nearestFrame, placeAt, startOfStep, timeOfStep } from "./clip_time.js";
 import { aborted } from "./error.js";
 
 const kInFlight = 2; // one is decoded while another travels
 const kShortOf = 0.001; // intervals, where time waits for a frame
+const kExact = 1e-6; // intervals: a time that near to that of a frame is equal to it
 
 export const kLoops = ["repeat", "once", "pingpong"];
 
 export class Playback {
   /** request(index, signal): a promise of a frame. discard(frame) takes those that are not wanted
    * any more; failed(error, index) those that cannot be had, without which playing goes on. */
-  constructor({ frames, frameRate, ahead = 4, request, discard = () => {}, failed = () => {} }) {
-    Object.assign(this, { frames, frameRate, ahead, request, discard, failed });
+  constructor({ frames, frameRate, ahead = 4, interpolates = false, request, discard = () => {},
+    failed = () => {} }) {
+    Object.assign(this, { frames, frameRate, ahead, interpolates, request, discard, failed });
     this.speed = 1; // below 0: backwards
     this.loop = "repeat";
     this.playing = false;
     this.finished = () => {}; // called at the end of a range that is played once
+    this.looped = () => {}; // called where a range begins again, or turns back
     this.arrived = () => {}; // called when a frame, or its error, is there
     this.waiting = 0; // requests without a reply
     this.ready = new Map(); // by step: { index, frame }
@@ -44,6 +50,14 @@ export class Playback {
     if (!kLoops.includes(loop)) throw new RangeError(`loop is one of ${kLoops.join(", ")}`);
     const { seconds } = this;
     this.loop = loop;
+    this.seekSeconds(seconds);
+  }
+
+  /** Whether `following` and `fraction` matter. */
+  setInterpolates(interpolates) {
+    if (interpolates === this.interpolates) return;
+    const { seconds } = this;
+    this.interpolates = interpolates;
     this.seekSeconds(seconds);
   }
 
@@ -80,9 +94,32 @@ export class Playback {
     return this.first + (this.speed < 0 ? count - 1 - place : place);
   }
 
-  /** Whether tick() need not wait for the frame to be shown. */
+  /** Whether tick() need not wait for what is to be shown. */
   get isReady() {
-    return this.isShown || this.ready.has(this.current);
+    return (this.isShown || this.ready.has(this.current)) &&
+      (!this.needsNext || this.ready.has(this.current + 1));
+  }
+
+  /** Whether the time is between two frames, both of which are to be shown. */
+  get needsNext() {
+    return this.interpolates && !this.isAtEnd && this.passed > kExact;
+  }
+
+  /** Intervals since the step began. */
+  get passed() {
+    return this.time - timeOfStep(this.current, this.count, this.loop);
+  }
+
+  /** The frame after the one that is shown, if it interpolates, and if that is there. */
+  get following() {
+    if (!this.interpolates || !this.isShown || this.isAtEnd) return undefined;
+    return this.ready.get(this.current + 1)?.frame;
+  }
+
+  /** How far on the way to the following frame, from 0 to 1. */
+  get fraction() {
+    const { passed } = this;
+    return passed > kExact ? Math.min(passed, 1) : 0;
   }
 
   /** Whether the last frame is shown, and no other follows. */
@@ -119,7 +156,8 @@ export class Playback {
     const last = this.count - 1;
     const place = Math.min(Math.max(wanted, 0), last);
     this.time = this.speed < 0 ? last - place : place; // in intervals
-    this.current = nearestFrame(this.time); // the step
+    this.current = this.interpolates // the step
+      ? Math.floor(this.time + kExact) : nearestFrame(this.time);
     this.next = this.current; // to be asked for
     this.isShown = false;
     this.cancel();
@@ -138,7 +176,7 @@ export class Playback {
   /** How many frames to hold, with those to come. Of a short animation, each other frame once:
    * then the one that is shown comes again. */
   get wanted() {
-    if (!this.playing) return this.isShown || this.next !== this.current ? 0 : 1;
+    if (!this.playing) return (this.isShown ? 0 : 1) + (this.needsNext ? 1 : 0);
     const ahead = Math.max(1, Math.min(this.ahead, this.count - 1));
     return this.loop === "once" ? Math.min(ahead, this.count - this.next) : ahead;
   }
@@ -176,6 +214,7 @@ export class Playback {
   tick(seconds) {
     let shown;
     if (!this.isShown) {
+      if (!this.playing && !this.isReady) return undefined;
       shown = this.take(this.current);
       this.pump();
       return shown;
@@ -183,7 +222,7 @@ export class Playback {
     if (!this.playing) return undefined;
     this.time += seconds * this.frameRate * Math.abs(this.speed);
     while (!this.isAtEnd) {
-      const next = startOfStep(this.current + 1, this.count, this.loop);
+      const next = this.startOf(this.current + 1);
       if (next > this.time) break;
       if (!this.ready.has(this.current + 1)) {
         this.time = next - kShortOf;
@@ -191,7 +230,10 @@ export class Playback {
       }
       if (shown?.frame) this.discard(shown.frame);
       shown = this.take(++this.current);
+      if (this.isAtTurn) this.looped();
     }
+    const waits = this.interpolates && !this.isAtEnd && !this.ready.has(this.current + 1);
+    if (waits) this.time = Math.min(this.time, timeOfStep(this.current, this.count, this.loop));
     if (this.hasEnded) {
       this.time = this.count - 1;
       this.pause();
@@ -199,6 +241,16 @@ export class Playback {
     }
     this.pump();
     return shown;
+  }
+
+  startOf(step) {
+    return this.interpolates ? timeOfStep(step, this.count, this.loop) - kExact
+      : startOfStep(step, this.count, this.loop);
+  }
+
+  /** Whether the step is the first one of a turn. */
+  get isAtTurn() {
+    return this.current % (this.loop === "repeat" ? this.count : this.count - 1) === 0;
   }
 
   take(step) {

@@ -1,6 +1,8 @@
 // What a mesh in three.js looks like: attributes of its vertices, and materials from the asset.
 import { BufferAttribute, Mesh, MeshStandardMaterial } from "three";
 
+import { coarseSurface } from "./coarse_surface.js";
+import { RlpcDecoder } from "./decoder.js";
 import { byMaterial, hasNormals } from "./sets.js";
 
 const kUsualColour = 0xb4bcc4;
@@ -22,22 +24,35 @@ export function usualMaterial({ vertexColors = false, flatShading = false } = {}
 }
 
 /** The drawn mesh and, if they are wanted, the materials of a decoder; undefined if there are none,
- * or they have an error. isFlat: in glTF, meshes without normals are. */
+ * or they have an error. isFlat: in glTF, meshes without normals are. Of a coarse mesh also places,
+ * the vertex of its frames for each drawn one, and whole, the look of the whole mesh. */
 export async function loadLook(decoder,
   { attributes = true, textures = true, material, gltfLoader }) {
   const { hasAttributes, hasAsset, damagedUnits } = decoder.info;
   if (damagedUnits > 0) warn("attributes, materials, clips or metadata are damaged, and left out");
-  if (!attributes || !hasAttributes && !hasAsset || decoder.coarseVertices) return undefined;
+  if (!attributes || !hasAttributes && !hasAsset) return undefined;
   const wantsMaterials = hasAsset && !material;
+  let whole;
   try {
-    const [drawn, sets, gltf] = await Promise.all([decoder.drawn(), decoder.attributes(),
+    whole = decoder.coarseVertices ? await RlpcDecoder.open(decoder) : decoder;
+    const [drawn, sets, gltf] = await Promise.all([whole.drawn(), whole.attributes(),
       wantsMaterials ? loadMaterials(decoder, textures, gltfLoader) : undefined]);
-    return { drawn, materialOf: sets.get("material"), gltf, isFlat: gltf && !hasNormals(sets) };
+    const look = { drawn, materialOf: sets.get("material"), gltf,
+      isFlat: gltf && !hasNormals(sets) };
+    return decoder.coarseVertices ? coarseLook(look, decoder) : look;
   } catch (error) {
     if (error.name === "AbortError" || ["network", "closed"].includes(error.kind)) throw error;
     warn(`attributes are left out: ${error.message}`);
     return undefined;
+  } finally {
+    if (whole !== decoder) whole?.close();
   }
+}
+
+function coarseLook(whole, { indices, coarseVertices }) {
+  const drawn = coarseSurface(whole, { indices, vertices: coarseVertices });
+  const { materialOf, vertices: places } = drawn;
+  return { ...whole, drawn, materialOf, places, whole };
 }
 
 /** The asset, as three's GLTFLoader reads it; undefined if it cannot. */
@@ -56,8 +71,11 @@ async function loadMaterials(decoder, textures, gltfLoader) {
       return undefined;
     }
   }
+  const canDecode = typeof createImageBitmap === "function" || typeof Image === "function";
+  if (textures && !canDecode) warn("textures are left out, because there are no images here");
   try {
-    return await loader.parseAsync(textures ? asset.slice().buffer : withoutTextures(asset), "");
+    return await loader.parseAsync(
+      textures && canDecode ? asset.slice().buffer : withoutTextures(asset), "");
   } catch (error) {
     warn(`materials are left out: ${error.message}`);
     return undefined;
@@ -89,19 +107,22 @@ export function setAttributes(geometry, { attributes }) {
 }
 
 /** Sets the index and its groups, and returns the material or materials. `material`: of the
- * caller. */
-export async function dress(geometry, { drawn, materialOf, gltf }, material) {
-  const look = { vertexColors: "color" in geometry.attributes,
+ * caller. Notes in the look which numbers of materials there are. */
+export async function dress(geometry, look, material) {
+  const { drawn, materialOf, gltf } = look;
+  const usual = { vertexColors: "color" in geometry.attributes,
     flatShading: !("normal" in geometry.attributes) };
   const isList = Array.isArray(material);
   const numbers = gltf?.parser.json.materials?.length ?? (isList ? material.length - 1 : 0);
   const { indices, groups } = byMaterial(drawn.indices, materialOf, numbers);
+  look.numMaterials = numbers;
+  look.materialNumbers = groups.map((group) => group.material);
   geometry.setIndex(new BufferAttribute(indices, 1));
   if (material && !isList) return material;
   const materials = isList ? material : await Promise.all(groups.map(async (group) =>
     (group.material < numbers ? await finalMaterial(geometry, gltf.parser, group.material)
-      : undefined) ?? usualMaterial(look)));
-  if (!isList && materials.length <= 1) return materials[0] ?? usualMaterial(look);
+      : undefined) ?? usualMaterial(usual)));
+  if (!isList && materials.length <= 1) return materials[0] ?? usualMaterial(usual);
   groups.forEach(({ start, count, material: number }, i) =>
     geometry.addGroup(start, count, isList ? number : i));
   return materials;

@@ -1,0 +1,72 @@
+// Clips as AnimationClips of three.js, for its AnimationMixer.
+//
+// A track has two numbers: the place in the clip, in frames, and 1. The mixer blends them with what
+// the mesh has without actions, which is 0 and 0: times the weight w of the action, it hands over
+// w * place and w, so that the mesh knows both. Each clip is a property of its own, so that the
+// places of two clips are never blended; the mesh blends their positions.
+import { AnimationClip, LinearInterpolant, VectorKeyframeTrack } from "three";
+
+const kEqualRates = 1e-4; // relative: times of keys are 32-bit floats
+
+/** The place in a clip, as AnimationMixer sets it; of one mesh. */
+export class ClipPose {
+  constructor() {
+    this.weighted = 0; // weight * place
+    this.weight = 0; // 0 to 1
+    this.failed = () => {};
+  }
+
+  /** In frames from the start of the clip. */
+  get place() {
+    return this.weighted / this.weight;
+  }
+
+  /** Called by AnimationMixer for the state without actions. */
+  toArray(array, offset) {
+    array[offset] = 0;
+    array[offset + 1] = 0;
+  }
+
+  fromArray(array, offset) {
+    this.weighted = array[offset];
+    this.weight = array[offset + 1];
+  }
+}
+
+/** The property of a mesh for an animation. */
+export function poseName(slot) {
+  return `rlpcPose${slot}`;
+}
+
+/** Places without the rounding of times, which are 32-bit floats. */
+class PlaceInterpolant extends LinearInterpolant {
+  constructor(times, values, result, frameRate) {
+    super(times, values, 2, result ?? undefined);
+    this.frameRate = frameRate;
+  }
+
+  evaluate(time) {
+    const { parameterPositions: times, sampleValues: values, resultBuffer } = this;
+    const last = times.length - 1;
+    const [first] = values;
+    const end = values[2 * last];
+    const rate = last > 0 ? (end - first) / (times[last] - times[0]) : this.frameRate;
+    const isOurs = Math.abs(rate / this.frameRate - 1) < kEqualRates; // not stretched
+    const place = first + (time - times[0]) * (isOurs ? this.frameRate : rate);
+    resultBuffer[0] = Math.min(Math.max(place, first), end);
+    resultBuffer[1] = 1;
+    return resultBuffer;
+  }
+}
+
+/** clip: { name, frames }; duration: seconds. */
+export function clipAnimation(clip, slot, frameRate, duration) {
+  const { name, frames } = clip;
+  const times = Float32Array.from({ length: frames }, (_, i) => i / frameRate);
+  const values = Float32Array.from({ length: 2 * frames }, (_, i) => (i % 2 === 0 ? i / 2 : 1));
+  const track = new VectorKeyframeTrack(`.${poseName(slot)}`, times, values);
+  track.createInterpolant = function createInterpolant(result) {
+    return new PlaceInterpolant(this.times, this.values, result, frameRate);
+  };
+  return new AnimationClip(name, duration, [track]);
+}

@@ -1,0 +1,189 @@
+// Decoded frames of a stream, shared by all meshes that show it: each is decoded once while there
+// is memory for it, and the arrays of frames that are dropped are filled again.
+import { aborted } from "./error.js";
+
+const kInFlight = 2; // frames that are wanted: one is decoded while another travels
+const kMinFrames = 4; // kept whatever their size
+const kRetryMilliseconds = 2000; // until a frame that could not be decoded is asked for again
+
+/** Bytes for frames that are kept, unless the caller says otherwise. */
+export const kUsualFrameMemory = 2 ** 26;
+
+export class FrameStore {
+  #decode;
+  #capacity;
+  #frames = new Map(); // by index
+  #pending = new Map(); // requests without a reply, by index
+  #wants = new Map(); // by who wants them: the index of a frame. Served in this order, in turn.
+  #failures = new Map(); // by index: when
+  #numWanted = 0; // of #pending
+  #clock = 0; // counts uses
+  #isClosed = false;
+
+  /** decode(index, into, signal): a promise of a frame, with { positions, normals, bounds };
+   * `into`: a frame whose arrays can be filled, or undefined. arrived(): called when a frame, or its
+   * error, is there. */
+  constructor({ decode, bytesPerFrame, maxBytes = kUsualFrameMemory, arrived = () => {} }) {
+    this.#decode = decode;
+    this.#capacity = Math.max(kMinFrames, Math.floor(maxBytes / Math.max(1, bytesPerFrame)));
+    this.arrived = arrived;
+  }
+
+  /** How many frames are kept at most, but for more that are in use at the same time. */
+  get capacity() {
+    return this.#capacity;
+  }
+
+  get size() {
+    return this.#frames.size;
+  }
+
+  has(index) {
+    return this.#frames.has(index);
+  }
+
+  /** The frame if it is there; valid until the caller waits for something. */
+  get(index) {
+    const frame = this.#frames.get(index);
+    if (frame) frame.used = ++this.#clock;
+    return frame;
+  }
+
+  /** A promise of a frame, which is then kept until release(). */
+  acquire(index, signal) {
+    const there = this.get(index);
+    if (there) {
+      ++there.users;
+      return Promise.resolve(there);
+    }
+    const request = this.#pending.get(index) ?? this.#start(index);
+    ++request.waiting;
+    return new Promise((resolve, reject) => {
+      const leave = () => {
+        this.#leave(request);
+        reject(signal.reason);
+      };
+      signal?.addEventListener("abort", leave, { once: true });
+      request.promise.then((frame) => {
+        signal?.removeEventListener("abort", leave);
+        if (signal?.aborted) return;
+        ++frame.users;
+        resolve(frame);
+      }, (error) => {
+        signal?.removeEventListener("abort", leave);
+        reject(error);
+      });
+    });
+  }
+
+  /** Ends a request that nobody waits for. */
+  #leave(request) {
+    if (--request.waiting > 0 || request.isWanted) return;
+    this.#forget(request);
+    request.controller.abort(aborted());
+  }
+
+  release(frame) {
+    --frame.users;
+    this.#trim();
+  }
+
+  /** Asks for a frame on behalf of `who`, in place of what it wanted before. failed(error, index)
+   * of `who` is called if the frame cannot be decoded. */
+  want(who, index) {
+    if (this.#isClosed || this.#frames.has(index) || this.hasFailed(index)) return;
+    this.#wants.set(who, index);
+    this.#pump();
+  }
+
+  /** Ends what `who` wants. */
+  dismiss(who) {
+    this.#wants.delete(who);
+  }
+
+  /** Whether a frame could not be decoded, a short time ago. */
+  hasFailed(index) {
+    const when = this.#failures.get(index);
+    if (when === undefined) return false;
+    if (performance.now() - when < kRetryMilliseconds) return true;
+    this.#failures.delete(index);
+    return false;
+  }
+
+  close() {
+    this.#isClosed = true;
+    this.#wants.clear();
+    for (const { controller } of this.#pending.values()) controller.abort(aborted());
+    this.#pending.clear();
+    this.#frames.clear();
+  }
+
+  #pump() {
+    for (const [who, index] of this.#wants) {
+      if (this.#numWanted >= kInFlight) return;
+      this.#wants.delete(who);
+      if (!this.#frames.has(index)) this.#serve(who, index);
+    }
+  }
+
+  #serve(who, index) {
+    const request = this.#pending.get(index) ?? this.#start(index);
+    if (request.isWanted) return;
+    request.isWanted = true;
+    ++this.#numWanted;
+    request.promise.catch((error) => {
+      if (this.#isClosed) return;
+      this.#failures.set(index, performance.now());
+      who.failed(error, index);
+      this.arrived();
+    }).finally(() => {
+      --this.#numWanted;
+      if (!this.#isClosed) this.#pump();
+    });
+  }
+
+  #start(index) {
+    const request = { index, waiting: 0, isWanted: false, controller: new AbortController() };
+    const { signal } = request.controller;
+    this.#pending.set(index, request);
+    request.promise = this.#decode(index, this.#spare(), signal).then((frame) => {
+      this.#forget(request);
+      if (signal.aborted) throw signal.reason;
+      const { positions, normals, bounds } = frame;
+      const kept = { index, positions, normals, bounds, users: 0, used: ++this.#clock };
+      this.#frames.set(index, kept);
+      this.#failures.delete(index);
+      this.#trim();
+      this.arrived();
+      return kept;
+    }, (error) => {
+      this.#forget(request);
+      throw error;
+    });
+    request.promise.catch(() => {}); // those who wait are told
+    return request;
+  }
+
+  #forget(request) {
+    if (this.#pending.get(request.index) === request) this.#pending.delete(request.index);
+  }
+
+  /** A frame to be filled again, where there is no memory for one more. */
+  #spare() {
+    return this.#frames.size + this.#pending.size > this.#capacity ? this.#dropOldest() : undefined;
+  }
+
+  #trim() {
+    while (this.#frames.size > this.#capacity && this.#dropOldest()) ;
+  }
+
+  /** Of frames that are not in use: the one whose last use is longest ago; undefined: none. */
+  #dropOldest() {
+    let oldest;
+    for (const frame of this.#frames.values()) {
+      if (frame.users === 0 && !(frame.used > oldest?.used)) oldest = frame;
+    }
+    if (oldest) this.#frames.delete(oldest.index);
+    return oldest;
+  }
+}
