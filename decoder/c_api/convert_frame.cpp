@@ -125,13 +125,43 @@ void write_positions(const Triples<std::int32_t>& positions, const Grid& grid,
   }
 }
 
-void write_normals(const Triples<double>& sums, const rlpc_channel& channel) {
-  const std::size_t count = sums.num_vertices();
+float float_position(const Grid& grid, std::size_t axis, double position) {
+  return static_cast<float>(std::ldexp(position + grid.origin[axis], grid.log2_step));
+}
+
+void write_mixed_positions(const Mix<std::int32_t>& positions, const Grid& grid,
+                           const Int16Scale& scale, const rlpc_channel& channel) {
+  const std::size_t count = positions.first.num_vertices();
+  const auto as_float = [&](std::size_t v, std::size_t c) {
+    return float_position(grid, c, positions.at(v, c));
+  };
+  switch (channel.format) {
+    case RLPC_FLOAT:
+      write(channel, count, as_float);
+      break;
+    case RLPC_HALF:
+      write(channel, count,
+            [&](std::size_t v, std::size_t c) { return half_of(as_float(v, c)); });
+      break;
+    default:
+      write(channel, count, [&](std::size_t v, std::size_t c) {
+        const double coordinate =
+            std::ldexp(positions.at(v, c) + grid.origin[c], grid.log2_step);
+        return rounded<std::int16_t>((coordinate - scale.offset[c]) / scale.scale[c]);
+      });
+  }
+}
+
+namespace {
+
+// normal(v): that of a vertex, of length 1.
+template <class Normal>
+void write_unit_normals(const rlpc_channel& channel, std::size_t count, const Normal& normal) {
   const auto write_as = [&](const auto& convert) {
-    Vec3d normal{};
+    Vec3d unit{};
     write(channel, count, [&](std::size_t v, std::size_t c) {
-      if (c == 0) normal = unit_normal(sums.at(v));
-      return convert(normal[c]);
+      if (c == 0) unit = normal(v);
+      return convert(unit[c]);
     });
   };
   switch (channel.format) {
@@ -147,6 +177,22 @@ void write_normals(const Triples<double>& sums, const rlpc_channel& channel) {
     default:
       write_as([](double x) { return rounded<std::int8_t>(127 * x); });
   }
+}
+
+}  // namespace
+
+void write_normals(const Triples<double>& sums, const rlpc_channel& channel) {
+  write_unit_normals(channel, sums.num_vertices(),
+                     [&](std::size_t v) { return unit_normal(sums.at(v)); });
+}
+
+void write_mixed_normals(const Mix<double>& normals, const rlpc_channel& channel) {
+  constexpr double kShortest = 1e-6;  // of a sum of unit vectors that still has a direction
+  write_unit_normals(channel, normals.first.num_vertices(), [&](std::size_t v) {
+    const Vec3d sum{normals.at(v, 0), normals.at(v, 1), normals.at(v, 2)};
+    if (dot(sum, sum) > kShortest * kShortest) return unit_normal(sum.data());
+    return unit_normal(normals.weight > 0.5 ? normals.second.at(v) : normals.first.at(v));
+  });
 }
 
 void sum_normals(std::span<const std::int32_t> positions, std::span<const Triangle> triangles,

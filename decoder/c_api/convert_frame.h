@@ -41,13 +41,32 @@ struct Triples {
   }
 };
 
-// Both write bytes_needed() at most. The format has been checked.
+// Values of two frames with the same vertices; the second has this weight, from 0 to 1.
+template <class Number>
+struct Mix {
+  Triples<Number> first;
+  Triples<Number> second;
+  double weight = 0;
+
+  double at(std::size_t vertex, std::size_t c) const {
+    return (1 - weight) * first.at(vertex)[c] + weight * second.at(vertex)[c];
+  }
+};
+// A position between those of the grid, rounded once.
+float float_position(const Grid& grid, std::size_t axis, double position);
+
+// All write bytes_needed() at most. The format has been checked.
 //
 // positions: grid units
 void write_positions(const Triples<std::int32_t>& positions, const Grid& grid,
                      const Int16Scale& scale, const rlpc_channel& channel);
+// The format is not RLPC_INT32.
+void write_mixed_positions(const Mix<std::int32_t>& positions, const Grid& grid,
+                           const Int16Scale& scale, const rlpc_channel& channel);
 // sums: of any length
 void write_normals(const Triples<double>& sums, const rlpc_channel& channel);
+// normals: of length 1; where they cancel out, the one of the larger weight is written
+void write_mixed_normals(const Mix<double>& normals, const rlpc_channel& channel);
 
 // The sum of the normals of the triangles around each vertex, by area or by angle.
 void sum_normals(std::span<const std::int32_t> positions, std::span<const Triangle> triangles,

@@ -313,10 +313,12 @@ rlpc_status rlpc_decoder_next_floats(rlpc_decoder* decoder, float* xyz, size_t n
     const std::size_t wanted = 3 * std::size_t{decoder->decoder->num_vertices()};
     if (!rlpc::check_buffer(*decoder, xyz, num_values, wanted)) return RLPC_BAD_ARGUMENT;
     decoder->positions.resize(wanted);
+    decoder->blend.is_shown = false;
     const rlpc_status status = rlpc::next(*decoder, decoder->positions);
     // At the end, the last frame stays.
     if (status != RLPC_END) decoder->has_frame = status == RLPC_OK;
     if (status != RLPC_OK) return status;
+    decoder->next_of_frame = decoder->decoder->position();
     for (std::size_t i = 0; i < wanted; ++i) {
       xyz[i] = rlpc::float_position(header.grid, i % 3, decoder->positions[i]);
     }

@@ -37,6 +37,7 @@
 #include "common/c_api/rlpc_status.h"
 #include "decoder/c_api/rlpc_attributes.h"
 #include "decoder/c_api/rlpc_frame_output.h"
+#include "decoder/c_api/rlpc_pose.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -1,87 +1,16 @@
 // Frames in any order and form, and what concerns them (decoder/c_api/rlpc_decode.h).
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <span>
-#include <string>
 
 #include "common/io/float_position.h"
 #include "common/owned.h"
 #include "decoder/c_api/convert_frame.h"
 #include "decoder/c_api/decoder_handle.h"
+#include "decoder/c_api/frame_output.h"
 
 namespace rlpc {
 namespace {
-
-rlpc_status bad_output(rlpc_decoder& handle, const std::string& what) {
-  return handle.error.set(RLPC_BAD_ARGUMENT, what);
-}
-
-// name: of the channel; formats: a list of those it has.
-rlpc_status check_channel(rlpc_decoder& handle, const char* name, const rlpc_channel& channel,
-                          std::span<const std::uint32_t> formats, std::size_t num_vertices) {
-  if (channel.data == nullptr) return RLPC_OK;
-  if (std::find(formats.begin(), formats.end(), channel.format) == formats.end()) {
-    return bad_output(
-        handle, std::string(name) + ": they have no format " + std::to_string(channel.format));
-  }
-  rlpc_channel tight = channel;
-  tight.stride = 0;
-  const std::size_t bytes_of_vertex = bytes_needed(tight, 1);
-  if (channel.stride != 0 && channel.stride < bytes_of_vertex) {
-    return bad_output(handle, std::string(name) + ": a stride of " +
-                                  std::to_string(channel.stride) + " bytes is less than the " +
-                                  std::to_string(bytes_of_vertex) + " of a vertex");
-  }
-  const bool overflows =
-      channel.stride > (SIZE_MAX - bytes_of_vertex) / std::max<std::size_t>(1, num_vertices);
-  const std::size_t needed = overflows ? SIZE_MAX : bytes_needed(channel, num_vertices);
-  if (channel.num_bytes >= needed) return RLPC_OK;
-  return bad_output(handle, std::string(name) + ": the buffer has " +
-                                std::to_string(channel.num_bytes) + " bytes, not " +
-                                std::to_string(needed));
-}
-
-rlpc_status check_output(rlpc_decoder& handle, const rlpc_frame_output& output) {
-  constexpr std::array<std::uint32_t, 4> kOfPositions{RLPC_INT32, RLPC_FLOAT, RLPC_HALF,
-                                                      RLPC_INT16};
-  constexpr std::array<std::uint32_t, 4> kOfNormals{RLPC_FLOAT, RLPC_HALF, RLPC_INT16,
-                                                    RLPC_INT8};
-  if (output.normal_weight > RLPC_BY_ANGLE) {
-    return bad_output(handle,
-                      "normal_weight: there is no " + std::to_string(output.normal_weight));
-  }
-  for (const double scale : output.int16_scale) {
-    if (!(scale >= 0 && std::isfinite(scale)))
-      return bad_output(handle, "int16_scale: expected a positive finite number, or 0");
-  }
-  for (const double offset : output.int16_offset) {
-    if (!std::isfinite(offset))
-      return bad_output(handle, "int16_offset: expected a finite number");
-  }
-  if (output.split != 0 && !handle.drawn) {
-    return bad_output(handle, "split: call rlpc_decoder_split first");
-  }
-  const std::size_t num_vertices = output.split != 0 ? handle.drawn->vertices().num_vertices()
-                                                     : handle.decoder->num_vertices();
-  if (const auto status =
-          check_channel(handle, "positions", output.positions, kOfPositions, num_vertices);
-      status != RLPC_OK) {
-    return status;
-  }
-  return check_channel(handle, "normals", output.normals, kOfNormals, num_vertices);
-}
-
-Int16Scale scale_of(const rlpc_frame_output& output, const SequenceHeader& header) {
-  Int16Scale scale = int16_scale(header.grid, header.position_bits);
-  for (std::size_t c = 0; c < 3; ++c) {
-    if (output.int16_scale[c] == 0) continue;
-    scale.scale[c] = output.int16_scale[c];
-    scale.offset[c] = output.int16_offset[c];
-  }
-  return scale;
-}
 
 // decode(positions): a Result<bool>, false after the last frame.
 template <class Decode>
@@ -94,6 +23,7 @@ rlpc_status give_frame(rlpc_decoder& handle, const rlpc_frame_output* wanted,
   if (const auto status = check_output(handle, output); status != RLPC_OK) return status;
   const SequenceHeader& header = handle.decoder->header();
   handle.positions.resize(3 * std::size_t{handle.decoder->num_vertices()});
+  handle.blend.is_shown = false;
   const Result<bool> more = decode(std::span(handle.positions));
   if (!more) {
     handle.has_frame = false;
@@ -102,6 +32,7 @@ rlpc_status give_frame(rlpc_decoder& handle, const rlpc_frame_output* wanted,
   handle.error.clear();
   if (!*more) return RLPC_END;
   handle.has_frame = true;
+  handle.next_of_frame = handle.decoder->position();
   std::span<const std::uint32_t> vertices;
   if (output.split != 0) vertices = handle.drawn->vertices().stream_vertex;
   if (output.positions.data != nullptr) {
@@ -216,6 +147,10 @@ rlpc_status rlpc_decoder_bounds(rlpc_decoder* decoder, float least[3], float mos
       return decoder->error.set(RLPC_BAD_ARGUMENT, decoder->has_frame
                                                        ? "least or most is null"
                                                        : "no frame has been decoded");
+    }
+    if (decoder->blend.is_shown) {
+      rlpc::give_bounds(*decoder, least, most);
+      return RLPC_OK;
     }
     const rlpc::Vector<std::int32_t>& positions = decoder->positions;
     for (std::size_t c = 0; c < 3; ++c) {

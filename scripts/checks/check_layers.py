@@ -22,7 +22,7 @@ LAYERS = ("common", "decoder", "encoder", "conformance")
 INPUT_OUTPUT = {"cstdio", "filesystem", "fstream", "iomanip", "ios", "iostream", "istream",
                 "ostream", "streambuf", "syncstream"}
 PUBLIC_HEADERS = ("common/c_api/rlpc_clip.h", "common/c_api/rlpc_status.h",
-                  "decoder/c_api/rlpc_frame_output.h",
+                  "decoder/c_api/rlpc_frame_output.h", "decoder/c_api/rlpc_pose.h",
                   "decoder/c_api/rlpc_decode.h", "decoder/rlpc_decoder.h", "encoder/frame_encoder.h",
                   "encoder/c_api/rlpc_encode.h", "encoder/rlpc_encoder.h")
 # Headers of the standard library that our C headers include.
