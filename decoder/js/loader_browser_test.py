@@ -361,15 +361,90 @@ class Loader(InScene):
     def test_nothing_is_left_after_dispose(self):
         result = self.run_script("""
             const mesh = await show('walk.rlpc');
-            renderer.render(scene, camera);
+            const empty = { ...renderer.info.memory };
             const copy = mesh.clone();
+            scene.add(copy);
+            renderer.render(scene, camera);
             const before = renderer.info.memory.geometries;
             mesh.removeFromParent();
             mesh.dispose();
+            copy.update(0);
+            renderer.render(scene, camera); // the clone needs nothing of it
+            const open = await copy.decoder.frame(0).then(({ index }) => index);
+            copy.removeFromParent();
+            copy.dispose();
             const error = await mesh.decoder.frame(0).catch((error) => error);
-            return { freed: before - renderer.info.memory.geometries, kind: error.kind,
-                     shared: copy.geometry === mesh.geometry && copy.type };""")
-        self.assertEqual(result, {"freed": 1, "kind": "closed", "shared": "Mesh"})
+            return { freed: before - renderer.info.memory.geometries, open, kind: error.kind,
+                     isOwn: copy.geometry !== mesh.geometry && copy.type };""")
+        self.assertEqual(result, {"freed": 2, "open": 0, "kind": "closed", "isOwn": "RLPCMesh"})
+
+    def test_what_is_between_frames(self):
+        result = self.run_script("""
+            const mesh = await show('walk.rlpc');
+            const [a, b] = [await mesh.decoder.frame(20), await mesh.decoder.frame(21)];
+            await mesh.seek(20.25 / 30);
+            const shown = mesh.geometry.attributes.position.array;
+            const off = shown.reduce((most, x, i) =>
+              Math.max(most, Math.abs(x - 0.75 * a.positions[i] - 0.25 * b.positions[i])), 0);
+            const moved = a.positions.reduce((most, x, i) =>
+              Math.max(most, Math.abs(x - b.positions[i])), 0);
+            mesh.interpolate = false;
+            await mesh.seek(20.25 / 30);
+            return { off, moved, hash: await sha256(mesh.geometry.attributes.position.array) };""")
+        self.assertLess(result["off"], 1e-6)
+        self.assertGreater(result["moved"], 1e-3)
+        self.assertEqual(result["hash"], self.hash_of(20))
+
+    def test_actions_and_clones_with_few_decoded_frames(self):
+        result = self.run_script("""
+            const mesh = await show('walk.rlpc');
+            const { decoder } = mesh;
+            let decoded = 0;
+            const frame = decoder.frame.bind(decoder);
+            decoder.frame = (...options) => {
+              ++decoded;
+              return frame(...options);
+            };
+            const clones = Array.from({ length: 50 }, () => mesh.clone());
+            const mixers = clones.map((clone, i) => {
+              const mixer = new THREE.AnimationMixer(clone);
+              const [walk, wave] = clone.animations.map((clip) => mixer.clipAction(clip));
+              walk.play();
+              wave.play().time = i / 45;
+              walk.crossFadeTo(wave, 0.5, true);
+              scene.add(clone);
+              return mixer;
+            });
+            for (let i = 0; i < 40; ++i) {
+              for (const mixer of mixers) mixer.update(1 / 60);
+              renderer.render(scene, camera);
+              await new Promise((next) => setTimeout(next, 5));
+            }
+            await Promise.all(clones.map((clone) => clone.ready()));
+            // The fade is over: each shows its place in the second clip.
+            let off = 0;
+            for (const [i, clone] of clones.entries()) {
+              const action = mixers[i].existingAction(clone.animations[1]);
+              const place = 20 + 30 * action.time;
+              const [a, b] = await Promise.all([Math.floor(place), Math.floor(place) + 1].map(
+                (index) => frame(Math.min(index, 59))));
+              clone.geometry.attributes.position.array.forEach((x, k) => {
+                const part = place - Math.floor(place);
+                off = Math.max(off, Math.abs(x - (1 - part) * a.positions[k] - part * b.positions[k]));
+              });
+            }
+            return { decoded, off };""")
+        self.assertLess(result["off"], 1e-4)
+        self.assertLessEqual(result["decoded"], 60)  # each frame once
+
+    def test_the_crowd(self):
+        self.browser.open(f"{self.server.address}/node_modules/rlpc/examples/crowd.html"
+                          "?src=/walk.rlpc&count=200&layers=5")
+        self.browser.wait_for("globalThis.pictureRate > 0")
+        told = self.browser.evaluate("document.getElementById('told').textContent")
+        print(f"in Chromium, drawn by the processor: {told}")
+        self.browser.screenshot(self.folder / "crowd.png")
+        self.assertIn("200 clones", told)
 
     def test_the_example(self):
         self.browser.open(f"{self.server.address}/node_modules/rlpc/examples/index.html"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The npm package in node: its decoder decodes what rlpcdec decodes; its types.
 
-  package_test.py --bin FOLDER [Node|Modules|Types]...
+  package_test.py --bin FOLDER [Node|Files|Modules|Types]...
 
 Exit code: 0 passed, 1 failed, 77 if all was skipped.
 """
@@ -13,12 +13,13 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "player"))
-from player_testing import (MODULES, PACKAGE, ROOT, STREAMS, Decoded, InFolder, main,  # noqa: E402
-                            need_node, need_player)
+from player_testing import (MODULES, PACKAGE, ROOT, STREAMS, Decoded, InFolder,  # noqa: E402
+                            Tools, float_frames, main, need_node, need_player)
 
 EXIT_CODES = {"truncated": 1, "invalid": 1, "unsupported": 2, "limit": 3}
 
@@ -89,6 +90,117 @@ class Node(InFolder):
             self.assertEqual(result["floats"], Decoded(stream, self.folder).floats(self.folder))
 
 
+class Files(InFolder):
+    """Streams as files, in node."""
+
+    @classmethod
+    def setUpClass(cls):
+        need_player()
+        need_node()
+        if not (MODULES / "three").is_dir():
+            raise unittest.SkipTest("three.js is not there: scripts/player")
+        super().setUpClass()
+        modules = cls.folder / "node_modules"
+        modules.mkdir()
+        (modules / "rlpc").symlink_to(PACKAGE)
+        (modules / "three").symlink_to(MODULES / "three")
+
+    def run_script(self, body, cwd=None):
+        script = self.folder / "script.mjs"
+        script.write_text(f"""
+            import {{ RlpcDecoder }} from "rlpc";
+            import {{ RLPCLoader, RLPCMesh }} from "rlpc/three";
+            console.log(JSON.stringify(await (async () => {{ {body} }})()));""")
+        done = subprocess.run(["node", "--preserve-symlinks", script], cwd=cwd or self.folder,
+                              capture_output=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr.decode())
+        return json.loads(done.stdout.splitlines()[-1])
+
+    def test_paths_and_file_urls(self):
+        stream = self.encode("a walk#1 50%.rlpc", "--gof", "20")
+        (self.folder / "sub").mkdir()
+        hashes = [hashlib.sha256(frame).hexdigest() for frame in float_frames(stream, self.folder)]
+        addresses = [f"../{stream.name}", str(stream), stream.as_uri()]
+        result = self.run_script(f"""
+            const {{ createHash }} = await import("node:crypto");
+            const all = [];
+            for (const address of {json.dumps(addresses)}) {{
+              const mesh = await new RLPCLoader().loadAsync(address);
+              const decoder = await RlpcDecoder.open(address.startsWith("file:")
+                ? new URL(address) : address);
+              const {{ positions }} = await decoder.frame(41);
+              await mesh.seek(17 / 30);
+              all.push([positions, mesh.geometry.attributes.position.array].map((floats) =>
+                createHash("sha256").update(floats).digest("hex")));
+              mesh.dispose();
+              decoder.close();
+            }}
+            return all;""", cwd=self.folder / "sub")
+        self.assertEqual(result, [[hashes[41], hashes[17]]] * 3)
+
+    def test_a_file_that_is_not_there(self):
+        told = self.run_script("""
+            const { kind, message } = await new RLPCLoader().loadAsync("no such.rlpc")
+              .catch((error) => error);
+            return [kind, message];""")
+        self.assertEqual(told[0], "source")
+        self.assertIn("no such.rlpc", told[1])
+
+    def test_levels_have_the_positions_and_values_of_the_whole_mesh(self):
+        """Each vertex of a level is a drawn vertex of the mesh, with its values."""
+        self.encode_glb("tulip")
+        for options in ("{}", "{ attributes: false }", "{ coarseLayers: 6 }"):
+            told = self.run_script(f"""
+                const warn = console.warn;
+                const mesh = await new RLPCLoader().setOptions({options}).loadAsync("tulip.rlpc");
+                const whole = mesh.geometry.attributes;
+                const key = (attributes, i) => JSON.stringify(Object.keys(attributes).sort()
+                  .filter((name) => name !== "normal" || {json.dumps("coarse" not in options)})
+                  .map((name) => {{
+                    const {{ array, itemSize }} = attributes[name];
+                    return [name, ...array.subarray(itemSize * i, itemSize * (i + 1))];
+                  }}));
+                const sizes = [mesh.geometry.index.count];
+                const clone = mesh.clone();
+                for (const [layers, distance] of [[5, 10], [4, 20], [3, 30]]) {{
+                  const level = await mesh.addLevel({{ layers, distance }});
+                  mesh.level = 0;
+                  await mesh.seek(mesh.duration * 0.77);
+                  const vertices = new Set(Array.from({{ length: whole.position.count }},
+                    (_, i) => key(whole, i)));
+                  mesh.level = level;
+                  const {{ attributes, index, groups }} = mesh.geometry;
+                  for (let i = 0; i < attributes.position.count; ++i) {{
+                    if (!vertices.has(key(attributes, i))) return [layers, i, key(attributes, i)];
+                  }}
+                  if (Math.max(...index.array) >= attributes.position.count) return "index";
+                  const drawn = groups.reduce((sum, {{ count }}) => sum + count, 0);
+                  if (groups.length > 0 && drawn !== index.count) return "groups";
+                  sizes.push(index.count);
+                  await clone.seek(mesh.time);
+                  clone.level = level;
+                  if (clone.geometry.index.count !== index.count) return "clone";
+                }}
+                const far = await mesh.addLevel({{ layers: 99 }}).catch((error) => error.name);
+                const before = mesh.geometry;
+                mesh.dispose();
+                clone.dispose();
+                return {{ sizes, names: Object.keys(whole).sort(), far }};""")
+            self.assertIsInstance(told, dict, told)
+            self.assertEqual(sorted(told["sizes"], reverse=True), told["sizes"])
+            self.assertEqual(len(set(told["sizes"])), 4)
+            self.assertEqual(told["far"], "RangeError")
+            self.assertEqual("uv" in told["names"], "false" not in options)
+
+    @classmethod
+    def encode_glb(cls, name):
+        done = subprocess.run([Tools.folder / "rlpcenc", "-q", STREAMS / "inputs" / f"{name}.glb",
+                               "-o", cls.folder / f"{name}.rlpc", "--preset", "fast"],
+                              capture_output=True, timeout=120, check=False)
+        if done.returncode != 0:
+            raise AssertionError(done.stderr.decode())
+
+
 class Modules(unittest.TestCase):
     """Modules that need no decoder."""
 
@@ -113,6 +225,19 @@ class Modules(unittest.TestCase):
 
     def test_wasm_decoder(self):
         self.run_in_node("wasm_decoder_test.mjs")
+
+    def test_coarse_surface(self):
+        self.run_in_node("coarse_surface_test.mjs")
+
+    def test_mesh(self):
+        """With three.js, and a decoder that the test makes."""
+        if not (MODULES / "three").is_dir():
+            raise unittest.SkipTest("three.js is not there: scripts/player")
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("src", "testing"):
+                shutil.copytree(HERE / name, pathlib.Path(folder) / name)
+            (pathlib.Path(folder) / "node_modules").symlink_to(MODULES)
+            self.run_in_node(pathlib.Path(folder) / "testing" / "mesh_test.mjs")
 
 
 class Types(InFolder):

@@ -3,7 +3,7 @@
 import { aborted } from "./error.js";
 
 const kInFlight = 2; // frames that are wanted: one is decoded while another travels
-const kMinFrames = 4; // kept whatever their size
+const kMinFrames = 8; // kept whatever their size
 const kRetryMilliseconds = 2000; // until a frame that could not be decoded is asked for again
 
 /** Bytes for frames that are kept, unless the caller says otherwise. */
@@ -19,6 +19,11 @@ export class FrameStore {
   #numWanted = 0; // of #pending
   #clock = 0; // counts uses
   #isClosed = false;
+  #isDue = false; // whether #pump() will be called
+  #pumpLater = () => {
+    this.#isDue = false;
+    this.#pump();
+  };
 
   /** decode(index, into, signal): a promise of a frame, with { positions, normals, bounds };
    * `into`: a frame whose arrays can be filled, or undefined. arrived(): called when a frame, or its
@@ -93,7 +98,9 @@ export class FrameStore {
   want(who, index) {
     if (this.#isClosed || this.#frames.has(index) || this.hasFailed(index)) return;
     this.#wants.set(who, index);
-    this.#pump();
+    if (this.#isDue) return;
+    this.#isDue = true;
+    queueMicrotask(this.#pumpLater); // frames that are being blended now must not be filled again
   }
 
   /** Ends what `who` wants. */

@@ -87,7 +87,8 @@ export interface Progress {
 }
 
 /** What a stream can be read from. A URL is read in ranges, as far as frames need them; a server
- * without ranges sends it whole. Another decoder shares its bytes and its worker. */
+ * without ranges sends it whole. In node, a string without a scheme is the path of a file. Another
+ * decoder shares its bytes and its worker. */
 export type Source = string | URL | ArrayBuffer | ArrayBufferView | Blob | RlpcDecoder;
 
 export interface OpenOptions {
@@ -244,6 +245,8 @@ export class Playback<F = Frame> {
     frameRate: number;
     /** Frames to hold; usually 4. */
     ahead?: number;
+    /** Whether `following` and `fraction` matter: then time waits until both frames are there. */
+    interpolates?: boolean;
     request: (index: number, signal: AbortSignal) => Promise<F>;
     /** Takes frames that are not wanted any more. */
     discard?: (frame: F) => void;
@@ -258,13 +261,21 @@ export class Playback<F = Frame> {
   readonly seconds: number;
   /** Seconds from the start of the range to its end. */
   readonly duration: number;
+  readonly interpolates: boolean;
+  /** The frame after the one that is shown, if it interpolates, and if that is there. */
+  readonly following: F | undefined;
+  /** How far on the way to the following frame, from 0 to 1. */
+  readonly fraction: number;
   /** Called at the end of a range that is played once. */
   finished: () => void;
+  /** Called where a range begins again, or turns back. */
+  looped: () => void;
   /** Plays these frames, from the first. */
   setRange(first: number, count: number): void;
   /** Below 0: backwards. */
   setSpeed(speed: number): void;
   setLoop(loop: PlaybackLoop): void;
+  setInterpolates(interpolates: boolean): void;
   play(): void;
   pause(): void;
   seek(frame: number): void;

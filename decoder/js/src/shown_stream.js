@@ -46,7 +46,7 @@ export class ShownStream {
 
   /** How many frames each mesh asks for before they are shown. */
   get ahead() {
-    const fair = Math.floor(this.frames.capacity / (2 * Math.max(1, this.meshes.size)));
+    const fair = Math.floor(this.frames.capacity / (4 * Math.max(1, this.meshes.size)));
     return Math.min(kMostAhead, Math.max(1, fair));
   }
 

@@ -1,5 +1,6 @@
 // Where the bytes of a stream come from. Each source has its size after open(), and puts bytes
 // into `ranges` with load(start, end, signal), which waits until they are there.
+import { isFile, urlOf } from "./address.js";
 import { ByteRanges } from "./byte_ranges.js";
 import { RlpcError } from "./error.js";
 import { HttpSource } from "./http_source.js";
@@ -39,11 +40,49 @@ class BlobSource {
   }
 }
 
-/** description: { bytes }, { blob } or { url, ... }; see HttpSource. progress(loaded, size). */
+/** A file, in node. */
+class FileSource {
+  constructor(url) {
+    this.url = new URL(url);
+    this.ranges = new ByteRanges(kMostCachedBytes);
+  }
+
+  async open() {
+    await this.use(async (file) => {
+      ({ size: this.size } = await file.stat());
+    });
+  }
+
+  async load(start, end) {
+    const gap = this.ranges.gap(start, end);
+    if (!gap) return;
+    await this.use(async (file) => {
+      const bytes = new Uint8Array(end - gap[0]);
+      const { bytesRead } = await file.read(bytes, 0, bytes.length, gap[0]);
+      if (bytesRead < bytes.length) throw new Error("it has become shorter");
+      this.ranges.add(gap[0], bytes);
+    });
+  }
+
+  async use(action) {
+    let file;
+    try {
+      file = await process.getBuiltinModule("node:fs/promises").open(this.url);
+      await action(file);
+    } catch (error) {
+      throw new RlpcError(`the file cannot be read: ${error.message}`, { kind: "source" });
+    } finally {
+      await file?.close();
+    }
+  }
+}
+
+/** description: { bytes }, { blob }, { file } or { url, ... }; see HttpSource. progress(loaded, size). */
 export function openSource(description, progress) {
-  const { bytes, blob } = description;
+  const { bytes, blob, file } = description;
   if (bytes) return new BytesSource(bytes);
   if (blob) return new BlobSource(blob);
+  if (file) return new FileSource(file);
   return new HttpSource(description, progress);
 }
 
@@ -55,8 +94,9 @@ export function describeSource(source, { headers, credentials, maxMemory }) {
     return { bytes: new Uint8Array(source.buffer, source.byteOffset, source.byteLength) };
   }
   if (typeof source === "string" || source instanceof URL) {
-    const url = new URL(source, globalThis.document?.baseURI).href;
-    return { url, headers: [...new Headers(headers)], credentials, maxBytes: maxMemory };
+    const url = urlOf(source);
+    if (isFile(url)) return { file: url.href };
+    return { url: url.href, headers: [...new Headers(headers)], credentials, maxBytes: maxMemory };
   }
   throw new TypeError("a stream is a URL, an ArrayBuffer, a typed array or a Blob");
 }

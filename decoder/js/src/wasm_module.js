@@ -1,10 +1,11 @@
 // The compiled WebAssembly module, once for all decoders.
+import { isFile, urlOf } from "./address.js";
 import { RlpcError } from "./error.js";
 
 const modules = new Map(); // promises, by address
 
 async function compile(url) {
-  if (url.protocol === "file:" && globalThis.process?.getBuiltinModule) { // node
+  if (isFile(url)) {
     const { readFile } = process.getBuiltinModule("node:fs/promises");
     return WebAssembly.compile(await readFile(url));
   }
@@ -26,7 +27,7 @@ async function compile(url) {
 export function compiledModule(wasm = new URL("./rlpc.wasm", import.meta.url)) {
   if (wasm instanceof WebAssembly.Module) return wasm;
   if (wasm instanceof ArrayBuffer || ArrayBuffer.isView(wasm)) return WebAssembly.compile(wasm);
-  const url = new URL(wasm, globalThis.document?.baseURI);
+  const url = urlOf(wasm);
   if (!modules.has(url.href)) {
     modules.set(url.href, compile(url).catch((error) => {
       modules.delete(url.href); // the next decoder tries again

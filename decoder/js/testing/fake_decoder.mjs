@@ -77,6 +77,7 @@ export class FakeDecoder {
   /** Answers so many requests that wait. */
   async serve(count = 1) {
     for (let i = 0; i < count; ++i) {
+      await settled();
       this.held.shift()?.();
       await settled();
     }

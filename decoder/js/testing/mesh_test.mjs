@@ -469,3 +469,27 @@ test("LevelsNeedADecoderThatHasThem", async () => {
   mesh.selectLevel(new PerspectiveCamera());
   assert.equal(mesh.level, 0);
 });
+
+test("CrossfadesWithTheLeastMemoryShowNoFrameThatHasLeft", async () => {
+  const clips = [{ name: "a", firstFrame: 0, frames: 50 }, { name: "b", firstFrame: 50, frames: 50 }];
+  const { decoder, mesh } = await meshOf({ frames: 100, clips }, { frameMemory: 1 });
+  const mixer = new AnimationMixer(mesh);
+  const [a, b] = mesh.animations.map((clip) => mixer.clipAction(clip).play());
+  a.setEffectiveWeight(0.5);
+  b.setEffectiveWeight(0.5);
+  b.time = 0.7;
+  for (let i = 0; i < 300; ++i) {
+    mixer.update(1 / 120);
+    mesh.updateMatrixWorld();
+    assert.ok(positions(mesh).every(Number.isFinite));
+    assertBounds(mesh);
+    await settled();
+    await settled();
+  }
+  await mesh.ready();
+  const halves = [30 * ((300 / 120) % (49 / 30)), 50 + 30 * ((0.7 + 300 / 120) % (49 / 30))]
+    .map((place) => between(place, 5));
+  assertNear(positions(mesh), halves[0].map((x, i) => (x + halves[1][i]) / 2), 1e-2, "the end");
+  assert.ok(decoder.mostInUse <= 8 + 3, `${decoder.mostInUse}`);
+  assert.ok(decoder.decoded.length < 3 * 150, `${decoder.decoded.length}`);
+});

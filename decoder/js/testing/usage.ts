@@ -1,5 +1,5 @@
 // Compiled by package_test.py, not run: all of the package, with its types.
-import { LoopOnce, MeshBasicMaterial, Scene } from "three";
+import { AnimationMixer, LoopOnce, MeshBasicMaterial, PerspectiveCamera, Scene } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { Playback, RlpcDecoder, RlpcError, type Attribute, type DrawnMesh, type Frame } from "rlpc";
 import { RLPCLoader, RLPCMesh } from "rlpc/three";
@@ -53,4 +53,26 @@ export async function show(scene: Scene, file: File): Promise<RLPCMesh> {
 export function playback(decoder: RlpcDecoder): Playback {
   const { frames, frameRate } = decoder.info;
   return new Playback({ frames, frameRate, request: (index, signal) => decoder.frame(index, { signal }) });
+}
+
+export async function crowd(scene: Scene, mesh: RLPCMesh, camera: PerspectiveCamera): Promise<number> {
+  const copy: RLPCMesh = mesh.clone();
+  copy.play();
+  const mixer = new AnimationMixer(mesh);
+  const [walk, run] = mesh.animations.map((clip) => mixer.clipAction(clip));
+  walk.play().crossFadeTo(run.play(), 0.3, true);
+  mixer.clipAction(mesh.makeAnimation(null)).play();
+  const level: number = await mesh.addLevel({ layers: 4, distance: 10, hysteresis: 0.1 });
+  mesh.interpolate = false;
+  mesh.addEventListener("loop", ({ clip }) => console.log(clip?.name));
+  await mesh.ready();
+  scene.add(copy);
+  return copy.update(0.1, camera) ? level : copy.selectLevel(camera).level;
+}
+
+export function between(decoder: RlpcDecoder): number {
+  const playback = new Playback({ frames: 2, frameRate: 30, interpolates: true,
+    request: (index) => decoder.frame(index) });
+  playback.setInterpolates(!playback.interpolates);
+  return playback.fraction * (playback.following?.positions[0] ?? 0);
 }

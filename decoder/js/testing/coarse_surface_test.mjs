@@ -1,0 +1,110 @@
+// Run by package_test.py: texture coordinates and materials of coarse meshes.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { coarseSurface, indicesIn } from "../src/coarse_surface.js";
+import { random } from "./fake_decoder.mjs";
+
+/** Two triangles for each cell of a grid, with vertex(row, column). */
+function gridTriangles(rows, columns, vertex) {
+  const triangles = [];
+  for (let r = 0; r < rows; ++r) {
+    for (let c = 0; c < columns; ++c) {
+      const [a, b, d, e] = [vertex(r, c), vertex(r, c + 1), vertex(r + 1, c), vertex(r + 1, c + 1)];
+      triangles.push(a, b, d, d, b, e);
+    }
+  }
+  return Uint32Array.from(triangles);
+}
+
+/** A tube, closed around: u jumps from 1 to 0 at a seam. Drawn vertices are ascending by vertex, those
+ * of the seam twice. */
+function tube(rows, columns) {
+  const vertices = [];
+  const uv = [];
+  const drawnOf = new Map();
+  for (let r = 0; r <= rows; ++r) {
+    for (let c = 0; c < columns; ++c) {
+      for (const u of c === 0 ? [0, 1] : [c / columns]) {
+        drawnOf.set(`${r} ${u}`, vertices.length);
+        vertices.push(r * columns + c);
+        uv.push(u, r / rows);
+      }
+    }
+  }
+  const indices = gridTriangles(rows, columns, (r, c) => drawnOf.get(`${r} ${c / columns}`));
+  return { vertices: Uint32Array.from(vertices), indices, attributes: new Map([["uv0",
+    { name: "uv0", components: 2, values: Float32Array.from(uv) }]]) };
+}
+
+/** Every step-th row and column of the tube. */
+function coarseTube(rows, columns, step) {
+  const vertices = [];
+  for (let r = 0; r <= rows; r += step) {
+    for (let c = 0; c < columns; c += step) vertices.push(r * columns + c);
+  }
+  const corners = gridTriangles(rows / step, columns / step,
+    (r, c) => r * step * columns + (c * step) % columns);
+  return { vertices: Uint32Array.from(vertices), indices: indicesIn(vertices, corners) };
+}
+
+test("NoTriangleCrossesASeam", () => {
+  const next = random(1);
+  for (let i = 0; i < 40; ++i) {
+    const step = 1 + Math.floor(3 * next());
+    const rows = step * (1 + Math.floor(5 * next()));
+    const columns = step * (3 + Math.floor(6 * next()));
+    const drawn = tube(rows, columns);
+    const coarse = coarseTube(rows, columns, step);
+    const { places, vertices, indices, attributes } = coarseSurface({ drawn }, coarse);
+    const uv = attributes.get("uv0").values;
+    assert.equal(indices.length, coarse.indices.length);
+    assert.equal(uv.length, 2 * places.length);
+    for (let t = 0; t < indices.length; t += 3) {
+      const us = [0, 1, 2].map((k) => uv[2 * indices[t + k]]);
+      assert.ok(Math.max(...us) - Math.min(...us) <= step / columns + 1e-6, `${us}`);
+      for (let k = 0; k < 3; ++k) {
+        const corner = indices[t + k];
+        assert.equal(vertices[corner], coarse.indices[t + k]);
+        assert.equal(drawn.vertices[places[corner]], coarse.vertices[vertices[corner]]);
+        for (let c = 0; c < 2; ++c) {
+          assert.equal(uv[2 * corner + c], drawn.attributes.get("uv0").values[2 * places[corner] + c]);
+        }
+      }
+    }
+  }
+});
+
+test("ACoarseMeshOfAllVerticesIsTheMesh", () => {
+  const drawn = tube(4, 6);
+  const coarse = coarseTube(4, 6, 1);
+  const { places, indices } = coarseSurface({ drawn }, coarse);
+  assert.deepEqual(indices.map((corner) => places[corner]), drawn.indices);
+});
+
+test("TrianglesKeepTheirMaterial", () => {
+  const [rows, columns, step] = [12, 12, 2];
+  const drawn = tube(rows, columns);
+  const materialOf = { domain: "triangle", components: 1,
+    integers: Uint32Array.from({ length: drawn.indices.length / 3 },
+      (_, t) => (t < drawn.indices.length / 6 ? 3 : 1)) };
+  const coarse = coarseTube(rows, columns, step);
+  const { materialOf: coarsened } = coarseSurface({ drawn, materialOf }, coarse);
+  const half = coarse.indices.length / 6;
+  coarsened.integers.forEach((number, t) => assert.equal(number, t < half ? 3 : 1, `${t}`));
+  assert.equal(coarseSurface({ drawn }, coarse).materialOf, undefined);
+});
+
+test("ChartsThatTouchAreNotMixed", () => {
+  // Two squares with an edge between them, each a chart of its own, far apart in the texture.
+  const drawn = {
+    vertices: Uint32Array.of(0, 1, 1, 2, 3, 4, 4, 5),
+    indices: Uint32Array.of(0, 1, 4, 4, 1, 5, 2, 3, 6, 6, 3, 7),
+    attributes: new Map([["uv0", { name: "uv0", components: 2, values: Float32Array.of(
+      0, 0, 0.1, 0, 0.8, 0, 0.9, 0, 0, 0.1, 0.1, 0.1, 0.8, 0.1, 0.9, 0.1) }]]),
+  };
+  const coarse = { vertices: Uint32Array.of(0, 1, 2, 3, 4, 5),
+    indices: Uint32Array.of(0, 1, 3, 3, 1, 4, 1, 2, 4, 4, 2, 5) };
+  const { places, indices } = coarseSurface({ drawn }, coarse);
+  assert.deepEqual(indices.map((corner) => places[corner]), drawn.indices);
+});
