@@ -33,7 +33,8 @@ PROGRAMS = {
     "encode_c_rlpc_static": ("encode.c", "rlpc_static", "c99"),
     "draw": ("draw.c", "rlpcdec", "c99"), "inspect": ("inspect.c", "rlpcdec", "c99"),
     "memory": ("memory.c", "rlpcdec", "c99"),
-    "play": ("play.c", "rlpcdec", "c11"), "vertices": ("vertices.c", "rlpcdec", "c99"),
+    "play": ("play.c", "rlpcdec", "c11"), "skin": ("skin.c", "rlpcdec", "c99"),
+    "vertices": ("vertices.c", "rlpcdec", "c99"),
     "decode_cpp": ("decode.cpp", "rlpc-decoder", "c++20"),
     "encode_cpp": ("encode.cpp", "rlpc-encoder", "c++20")}
 
@@ -115,6 +116,9 @@ def try_examples(folder, clip, work):
             == ["forward", "backward", "back and forth"], f"play prints {shown}")
     shown = run(folder / "memory", clip.stream, stdout=subprocess.PIPE, text=True).stdout
     require(shown.endswith("; 0 bytes left\n"), f"memory prints {shown}")
+    shown = run(folder / "skin", clip.stream, stdout=subprocess.PIPE, text=True).stdout
+    require(re.match(r"a quarter after frame 0: .*\nframe 0: \d+ bones, skinning is off by up to \S+\n",
+                     shown), f"skin prints {shown}")
     out = work / "frame.bin"
     run(folder / "vertices", clip.stream, out, stdout=subprocess.DEVNULL)
     vertices = int(clip.shape[0])
