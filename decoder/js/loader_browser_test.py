@@ -12,6 +12,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "testing"))
 from in_scene import InScene  # noqa: E402
+import textured_box  # noqa: E402
 from player_testing import STREAMS, main  # noqa: E402
 
 
@@ -257,6 +258,24 @@ class Loader(InScene):
         self.assertEqual((len(told[0]), told[1], told[2]), (1, True, True))
         self.assertIn('"three/addons/" to the import map', told[0][0])
 
+    def test_a_content_security_policy(self):
+        """The README names what textures need."""
+        page = (self.folder / "scene.html").read_text()
+        told = []
+        for name, blobs in (("open", "blob:"), ("closed", "")):
+            policy = ("default-src 'self'; style-src 'unsafe-inline'; script-src 'self' "
+                      f"'unsafe-inline' 'wasm-unsafe-eval'; connect-src 'self' {blobs}; "
+                      f"img-src 'self' data: {blobs}")
+            meta = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
+            (self.folder / f"{name}.html").write_text(page.replace('<meta charset="utf-8">',
+                                                                   f'<meta charset="utf-8">{meta}'))
+            self.browser.open(f"{self.server.address}/{name}.html")
+            self.browser.wait_for("globalThis.isReady")
+            told.append(self.run_script("""
+                const mesh = await show('box.rlpc');
+                return [mesh.material].flat().some(({ map }) => map?.image?.width > 0);"""))
+        self.assertEqual(told, [True, False])
+
     def test_damaged_attributes_and_assets_leave_a_plain_mesh(self):
         suite = STREAMS / "v1.2" / "either"
         for name, source, text in (("attributes", "ATT/ATT-0001x2", "R-ATT-03"),
@@ -436,6 +455,44 @@ class Loader(InScene):
             return { decoded, off };""")
         self.assertLess(result["off"], 1e-4)
         self.assertLessEqual(result["decoded"], 60)  # each frame once
+
+    def test_levels_of_detail_have_the_texture(self):
+        """Around the tube, its colours are where they are in the finest mesh."""
+        self.encode_glb("tube", textured_box.tube(24, 36))
+        told = self.run_script("""
+            const mesh = await show('tube.rlpc');
+            const turns = [0.6, 1.3, 2.2, 2.9, 3.8, 4.4, 5.3, 6.1];
+            const colours = () => turns.flatMap((turn) => {
+              mesh.rotation.y = turn;
+              return [pixel(0, -0.1), pixel(0, 0.1)].map((rgb) => rgb.slice(0, 3));
+            });
+            lookAtFront();
+            const all = [colours()];
+            const sizes = [mesh.geometry.index.count / 3];
+            for (const [layers, distance] of [[5, 10], [4, 20]]) {
+              mesh.level = await mesh.addLevel({ layers, distance });
+              all.push(colours());
+              sizes.push(mesh.geometry.index.count / 3);
+            }
+            const coarse = await show('tube.rlpc', { coarseLayers: 4 });
+            const levels = [3, 11, 9.5, 8.5, 30, 19, 12].map((distance) => {
+              camera.position.set(0, 0, distance + 0.001);
+              camera.updateMatrixWorld();
+              mesh.updateMatrixWorld();
+              return mesh.selectLevel(camera).level;
+            });
+            return { all, sizes, levels, coarse: [coarse.geometry.index.count / 3,
+              Object.keys(coarse.geometry.attributes).sort(), coarse.material.length] };""")
+        self.browser.screenshot(self.folder / "level.png")
+        finest, *coarser = told["all"]
+        self.assertEqual(len({tuple(x > 90 for x in colour) for colour in finest}), 5)
+        for colours in coarser:
+            off = [max(abs(x - y) for x, y in zip(a, b)) for a, b in zip(finest, colours)]
+            self.assertLess(sum(one > 60 for one in off), 3, (finest, colours))
+        self.assertEqual(told["sizes"], sorted(told["sizes"], reverse=True))
+        self.assertEqual(told["levels"], [0, 1, 0, 0, 2, 1, 1])
+        self.assertEqual(told["coarse"],
+                         [told["sizes"][2], ["normal", "position", "uv"], 2])
 
     def test_the_crowd(self):
         self.browser.open(f"{self.server.address}/node_modules/rlpc/examples/crowd.html"

@@ -107,8 +107,13 @@ class InFolder(unittest.TestCase):
     @classmethod
     def encode_box(cls, name, *look, **more):
         """The box of textured_box.py, as name.glb and name.rlpc; the path of the latter."""
+        return cls.encode_glb(name, textured_box.box(*look, **more))
+
+    @classmethod
+    def encode_glb(cls, name, data):
+        """A GLB as name.glb and name.rlpc; the path of the latter."""
         glb = cls.folder / f"{name}.glb"
-        glb.write_bytes(textured_box.box(*look, **more))
+        glb.write_bytes(data)
         stream = glb.with_suffix(".rlpc")
         done = run("rlpcenc", "-q", glb, "-o", stream, "--preset", "fast")
         if done.returncode != 0:

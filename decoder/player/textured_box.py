@@ -1,6 +1,7 @@
-"""A small animation with a texture, as a GLB: a box from -1 to 1 that leans over."""
+"""Small animations with a texture, as GLBs: a box from -1 to 1 that leans over, and a tube."""
 
 import json
+import math
 import struct
 import zlib
 
@@ -10,6 +11,7 @@ FACES = (((0, 0, 1), (1, 0, 0), (0, 1, 0)), ((0, 0, -1), (-1, 0, 0), (0, 1, 0)),
          ((0, -1, 0), (1, 0, 0), (0, 0, 1)), ((0, 1, 0), (1, 0, 0), (0, 0, -1)))
 RED, GREEN, BLUE, WHITE = (255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255)
 ROWS = ((RED, GREEN), (BLUE, WHITE))  # of the texture on each face, from the top
+COLOURS_AROUND = (RED, GREEN, BLUE, WHITE)
 MAGENTA = [1, 0, 1, 1]  # of the face without a texture
 FRAMES = 5
 
@@ -70,15 +72,40 @@ def box(colour=None, rows=ROWS, material=None):
         attributes["COLOR_0"] = buffer.floats([colour] * len(position), "VEC3")
     else:
         attributes["TEXCOORD_0"] = buffer.floats(uv, "VEC2")
+    return leaning(buffer, position, attributes, (indices[:30], indices[30:]),
+                   None if colour else rows, material)
+
+
+def tube(rings, around):
+    """A tube whose texture, the same colour along it, goes around once, with a seam; its upper half is
+    magenta."""
+    buffer = Buffer()
+    places = [(r, c) for r in range(rings + 1) for c in range(around + 1)]
+    angles = [2 * math.pi * (c % around) / around for _, c in places]
+    position = [[math.cos(a), 2 * r / rings - 1, -math.sin(a)]
+                for (r, _), a in zip(places, angles)]
+    attributes = {
+        "POSITION": buffer.floats(position, "VEC3"),
+        "NORMAL": buffer.floats([[math.cos(a), 0, -math.sin(a)] for a in angles], "VEC3"),
+        "TEXCOORD_0": buffer.floats([[c / around, r / rings] for r, c in places], "VEC2")}
+    halves = ([], [])
+    for r, c in places:
+        if r < rings and c < around:
+            a, b = r * (around + 1) + c, (r + 1) * (around + 1) + c
+            halves[2 * r // rings].extend((a, a + 1, b, b, a + 1, b + 1))
+    return leaning(buffer, position, attributes, halves, (COLOURS_AROUND,), None)
+
+
+def leaning(buffer, position, attributes, parts, rows, material):
+    """A GLB with two parts, lists of indices, of one mesh. rows: of the texture; None: there is none."""
     target = {"POSITION": buffer.floats([[0.5 * y, 0, 0] for _, y, _ in position], "VEC3")}
     primitives = [{"attributes": attributes, "targets": [target], "material": number,
-                   "indices": buffer.indices(part)}
-                  for number, part in enumerate((indices[:30], indices[30:]))]
+                   "indices": buffer.indices(part)} for number, part in enumerate(parts)]
     times = buffer.floats([[f / 30] for f in range(FRAMES)], "SCALAR")
     weights = buffer.floats([[f / FRAMES] for f in range(FRAMES)], "SCALAR")
-    image = buffer.view(png(rows))
+    image = buffer.view(png(rows or ROWS))
     plain = {"metallicFactor": 0, "roughnessFactor": 1}
-    texture = {} if colour else {"baseColorTexture": {"index": 0}}
+    texture = {"baseColorTexture": {"index": 0}} if rows else {}
     root = {
         "asset": {"version": "2.0"},
         "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
@@ -89,7 +116,7 @@ def box(colour=None, rows=ROWS, material=None):
             {"sampler": 0, "target": {"node": 0, "path": "weights"}}]}],
         "accessors": buffer.accessors, "bufferViews": buffer.views,
     }
-    if not colour:
+    if rows:
         nearest = {"magFilter": 9728, "minFilter": 9728, "wrapS": 33071, "wrapT": 33071}
         root |= {"textures": [{"source": 0, "sampler": 0}], "samplers": [nearest],
                  "images": [{"bufferView": image, "mimeType": "image/png"}]}

@@ -43,12 +43,13 @@ export class RlpcDecoder {
   #stream;
   #latest; // of the frames asked for with `replace`
   #isClosed = false;
+  #inherited; // options of other decoders of the stream, unless they have their own
   #known = new Map(); // promises of what is asked for once
 
   static async open(source, options = {}) {
-    const { signal, onProgress, maxMemory = kUsualMemory, coarseLayers = 0, verifyHashes = true,
-      skipDamagedUnits = true, worker, wasm } = options;
     const shared = source instanceof RlpcDecoder ? source : undefined;
+    const { signal, onProgress, maxMemory = kUsualMemory, coarseLayers = 0, verifyHashes = true,
+      skipDamagedUnits = true, worker, wasm } = { ...shared?.#inherited, ...options };
     const described = shared ? undefined : describeSource(source, { ...options, maxMemory });
     if (!Number.isInteger(coarseLayers) || coarseLayers < 0) {
       throw new RangeError("coarseLayers is a whole number, from 1 on");
@@ -58,6 +59,7 @@ export class RlpcDecoder {
     const link = shared ? shared.#link : await Link.create(workerFrom(worker));
     const decoder = new RlpcDecoder();
     decoder.#link = link;
+    decoder.#inherited = { maxMemory, verifyHashes, skipDamagedUnits, wasm: module };
     decoder.#stream = link.nextStream++;
     ++link.numUsers;
     if (onProgress) link.listeners.set(decoder.#stream, onProgress);

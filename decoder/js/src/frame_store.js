@@ -184,7 +184,8 @@ export class FrameStore {
     while (this.#frames.size > this.#capacity && this.#dropOldest()) ;
   }
 
-  /** Of frames that are not in use: the one whose last use is longest ago; undefined: none. */
+  /** Drops the frame whose last use is longest ago, of those that are not in use, and returns it;
+   * undefined: none. */
   #dropOldest() {
     let oldest;
     for (const frame of this.#frames.values()) {

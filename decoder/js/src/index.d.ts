@@ -88,7 +88,7 @@ export interface Progress {
 
 /** What a stream can be read from. A URL is read in ranges, as far as frames need them; a server
  * without ranges sends it whole. In node, a string without a scheme is the path of a file. Another
- * decoder shares its bytes and its worker. */
+ * decoder shares its bytes and its worker, and its options but `coarseLayers`, unless they are given. */
 export type Source = string | URL | ArrayBuffer | ArrayBufferView | Blob | RlpcDecoder;
 
 export interface OpenOptions {

@@ -194,7 +194,7 @@ export class RLPCMesh extends Mesh {
     return this;
   }
 
-  /** Of several clips with a name, the first. */
+  /** Returns a clip, which may be given by name: the first that has it. */
   #found(wanted) {
     if (wanted === null || this.clips.includes(wanted)) return wanted;
     const clip = this.clips.find(({ name }) => name === wanted);

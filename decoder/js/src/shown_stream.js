@@ -107,7 +107,7 @@ export class ShownStream {
     return level;
   }
 
-  /** Without attributes. */
+  /** A level without attributes. */
   #plain(indices, vertices, options) {
     const whole = this.decoder.coarseVertices; // of a mesh that is coarse itself
     const inFrames = whole ? indicesIn(whole, vertices) : vertices;

@@ -34,7 +34,8 @@ export interface RLPCLevelOptions {
   layers: number;
   /** From which distance to the camera selectLevel() chooses it; usually 0. */
   distance?: number;
-  /** By which part of the distance one has to come nearer than that for it to end; usually 0. */
+  /** The part of the distance by which one has to come nearer than that for it to end; usually
+   * 0. */
   hysteresis?: number;
 }
 

@@ -68,7 +68,7 @@ export class FakeDecoder {
       this.mostInUse = Math.max(this.mostInUse, ++this.numInUse);
     }
     const positions = positionsOf(index, vertices);
-    // As a worker does: the arrays that it was given cannot be used any more.
+    // Arrays that were handed over cannot be used any more, as with a worker.
     if (into) structuredClone(into.positions.buffer, { transfer: [into.positions.buffer] });
     return { index, positions, bounds: boundsOf(positions),
       normals: normals ? normalsOf(index, vertices) : undefined };
