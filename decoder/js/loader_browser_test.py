@@ -469,12 +469,12 @@ class Loader(InScene):
             lookAtFront();
             const all = [colours()];
             const sizes = [mesh.geometry.index.count / 3];
-            for (const [layers, distance] of [[5, 10], [4, 20]]) {
+            for (const [layers, distance] of [[17, 10], [15, 20]]) {
               mesh.level = await mesh.addLevel({ layers, distance });
               all.push(colours());
               sizes.push(mesh.geometry.index.count / 3);
             }
-            const coarse = await show('tube.rlpc', { coarseLayers: 4 });
+            const coarse = await show('tube.rlpc', { coarseLayers: 15 });
             const levels = [3, 11, 9.5, 8.5, 30, 19, 12].map((distance) => {
               camera.position.set(0, 0, distance + 0.001);
               camera.updateMatrixWorld();

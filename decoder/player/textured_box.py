@@ -14,6 +14,7 @@ ROWS = ((RED, GREEN), (BLUE, WHITE))  # of the texture on each face, from the to
 COLOURS_AROUND = (RED, GREEN, BLUE, WHITE)
 MAGENTA = [1, 0, 1, 1]  # of the face without a texture
 FRAMES = 5
+CLAMP, REPEAT = 33071, 10497
 
 
 def png(rows):
@@ -73,7 +74,7 @@ def box(colour=None, rows=ROWS, material=None):
     else:
         attributes["TEXCOORD_0"] = buffer.floats(uv, "VEC2")
     return leaning(buffer, position, attributes, (indices[:30], indices[30:]),
-                   None if colour else rows, material)
+                   {"rows": None if colour else rows, "material": material})
 
 
 def tube(rings, around):
@@ -93,11 +94,14 @@ def tube(rings, around):
         if r < rings and c < around:
             a, b = r * (around + 1) + c, (r + 1) * (around + 1) + c
             halves[2 * r // rings].extend((a, a + 1, b, b, a + 1, b + 1))
-    return leaning(buffer, position, attributes, halves, (COLOURS_AROUND,), None)
+    return leaning(buffer, position, attributes, halves,
+                   {"rows": (COLOURS_AROUND,), "wrap": REPEAT})
 
 
-def leaning(buffer, position, attributes, parts, rows, material):
-    """A GLB with two parts, lists of indices, of one mesh. rows: of the texture; None: there is none."""
+def leaning(buffer, position, attributes, parts, look):
+    """A GLB with two parts, lists of indices, of one mesh. look: rows of the texture (None: there is
+    none), wrap beyond it, material: members of that of the first part."""
+    rows, material, wrap = look["rows"], look.get("material"), look.get("wrap", CLAMP)
     target = {"POSITION": buffer.floats([[0.5 * y, 0, 0] for _, y, _ in position], "VEC3")}
     primitives = [{"attributes": attributes, "targets": [target], "material": number,
                    "indices": buffer.indices(part)} for number, part in enumerate(parts)]
@@ -117,7 +121,7 @@ def leaning(buffer, position, attributes, parts, rows, material):
         "accessors": buffer.accessors, "bufferViews": buffer.views,
     }
     if rows:
-        nearest = {"magFilter": 9728, "minFilter": 9728, "wrapS": 33071, "wrapT": 33071}
+        nearest = {"magFilter": 9728, "minFilter": 9728, "wrapS": wrap, "wrapT": wrap}
         root |= {"textures": [{"source": 0, "sampler": 0}], "samplers": [nearest],
                  "images": [{"bufferView": image, "mimeType": "image/png"}]}
     root["buffers"] = [{"byteLength": len(buffer.bytes)}]

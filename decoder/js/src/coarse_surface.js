@@ -1,94 +1,99 @@
-// Attributes of coarse meshes: which drawn vertices of the whole mesh the corners of their triangles
-// have. Positions of a coarse mesh are those of its vertices in the whole mesh, and each of these has
-// one drawn vertex or, at a seam, several: one for each side. A coarse triangle takes those of one
-// side.
+// Attributes of coarse meshes. Positions of a coarse mesh are those of its vertices in the whole mesh,
+// and each of these has one drawn vertex there or, at a seam, several: one for each side. The corners
+// of a coarse triangle take those of one side. Where it has corners on both, texture coordinates of
+// one side are continued to the other.
+import { mapped, Unfolding } from "./unfolding.js";
 
-const kMaxCopies = 64; // of a vertex, that are compared
+/** The first place of each number below `count` in a list that is ascending, and the end. */
+function starts(ascending, count) {
+  const first = new Uint32Array(count + 1);
+  for (const number of ascending) ++first[number + 1];
+  for (let i = 0; i < count; ++i) first[i + 1] += first[i];
+  return first;
+}
 
-/** The chart of each drawn vertex: those that triangles connect have the same number. */
-function chartsOf({ vertices, indices }) {
-  const parent = Uint32Array.from(vertices, (_, i) => i);
-  const root = (i) => {
-    let at = i;
-    while (parent[at] !== at) {
-      parent[at] = parent[parent[at]];
-      at = parent[at];
+/** For each drawn vertex, the triangles that have it. */
+class TrianglesAround {
+  constructor({ indices, vertices }) {
+    this.first = starts(indices, vertices.length);
+    const next = this.first.slice();
+    this.triangles = new Uint32Array(indices.length);
+    for (let i = 0; i < indices.length; ++i) {
+      this.triangles[next[indices[i]]++] = Math.floor(i / 3);
     }
-    return at;
-  };
-  for (let i = 0; i < indices.length; i += 3) {
-    const a = root(indices[i]);
-    const b = root(indices[i + 1]);
-    if (a !== b) parent[b] = a;
-    const c = root(indices[i + 2]);
-    if (c !== a) parent[c] = a;
   }
-  return parent.map((_, i) => root(i));
-}
 
-/** The first drawn vertex of each vertex of the stream, and the end. */
-function firstCopies(vertices, numVertices) {
-  const starts = new Uint32Array(numVertices + 1);
-  for (const vertex of vertices) ++starts[vertex + 1];
-  for (let v = 0; v < numVertices; ++v) starts[v + 1] += starts[v];
-  return starts;
-}
-
-/** How badly two drawn vertices fit into one triangle: those of different charts by far the worst;
- * otherwise, how far apart their texture coordinates are. */
-function misfit(charts, uv) {
-  return (a, b) => {
-    const apart = charts[a] === charts[b] ? 0 : 1e6;
-    return uv ? apart + Math.hypot(uv[2 * a] - uv[2 * b], uv[2 * a + 1] - uv[2 * b + 1]) : apart;
-  };
-}
-
-/** Writes the drawn vertices that fit best to three vertices of the stream. */
-function chooseCorners(out, at, vertices, starts, cost) {
-  const copies = (v) => [starts[v], Math.min(starts[v + 1], starts[v] + kMaxCopies)];
-  const [first, firstEnd] = copies(vertices[0]);
-  const [second, secondEnd] = copies(vertices[1]);
-  const [third, thirdEnd] = copies(vertices[2]);
-  let best = Infinity;
-  for (let a = first; a < firstEnd; ++a) {
-    let b = second;
-    for (let i = second + 1; i < secondEnd; ++i) if (cost(a, i) < cost(a, b)) b = i;
-    let c = third;
-    const costOf = (i) => cost(a, i) + cost(b, i);
-    for (let i = third + 1; i < thirdEnd; ++i) if (costOf(i) < costOf(c)) c = i;
-    const sum = cost(a, b) + costOf(c);
-    if (sum >= best) continue;
-    best = sum;
-    out[at] = a;
-    out[at + 1] = b;
-    out[at + 2] = c;
+  of(drawn) {
+    return this.triangles.subarray(this.first[drawn], this.first[drawn + 1]);
   }
 }
 
-/** For each drawn vertex, the triangles that have it: { starts, triangles }. */
-function trianglesAround(indices, numDrawn) {
-  const starts = new Uint32Array(numDrawn + 1);
-  for (const vertex of indices) ++starts[vertex + 1];
-  for (let v = 0; v < numDrawn; ++v) starts[v + 1] += starts[v];
-  const next = starts.slice();
-  const triangles = new Uint32Array(indices.length);
-  for (let i = 0; i < indices.length; ++i) triangles[next[indices[i]]++] = Math.floor(i / 3);
-  return { starts, triangles };
+/** The corners of coarse triangles: drawn vertices of the whole mesh, and further ones, which are
+ * copies of these with other texture coordinates. */
+class Corners {
+  constructor(drawn, around, numVertices) {
+    this.sets = [...drawn.attributes.values()].filter(({ name, components }) =>
+      name.startsWith("uv") && components === 2);
+    this.unfolding = new Unfolding(drawn, this.sets.map(({ values }) => values));
+    this.copies = starts(drawn.vertices, numVertices); // of each vertex of the stream
+    this.around = around;
+    this.numDrawn = drawn.vertices.length;
+    this.further = []; // { drawn, uvs }: uvs by set, or undefined: those of the drawn vertex
+    this.numbers = new Map(); // of further ones, by what they are
+  }
+
+  /** Drawn vertices, or numDrawn and more: further ones, for three vertices of the stream. */
+  choose([first, ...others]) {
+    let best;
+    for (let copy = this.copies[first]; copy < this.copies[first + 1]; ++copy) {
+      const found = this.unfolding.walk([...this.around.of(copy)], others);
+      if (found && !(found.steps >= best?.found.steps)) best = { copy, found };
+    }
+    if (!best) return [first, ...others].map((vertex) => this.copies[vertex]);
+    return [best.copy, ...best.found.ends.map((end) => this.#number(end))];
+  }
+
+  #number({ drawn, maps }) {
+    const uvs = maps.map((map, i) => mapped(map, this.sets[i].values, drawn));
+    if (uvs.every((uv) => uv === undefined)) return drawn;
+    const key = `${drawn} ${uvs.map((uv) => uv?.map(Math.fround))}`;
+    if (!this.numbers.has(key)) {
+      this.numbers.set(key, this.numDrawn + this.further.length);
+      this.further.push({ drawn, uvs });
+    }
+    return this.numbers.get(key);
+  }
+
+  drawnOf(number) {
+    return number < this.numDrawn ? number : this.further[number - this.numDrawn].drawn;
+  }
+
+  /** An attribute of drawn() at corners. */
+  at(set, numbers) {
+    const { name, components, values } = set;
+    const picked = new Float32Array(components * numbers.length);
+    const index = this.sets.indexOf(set);
+    numbers.forEach((number, i) => {
+      const drawn = this.drawnOf(number);
+      const uv = index < 0 ? undefined : this.further[number - this.numDrawn]?.uvs[index];
+      picked.set(uv ?? values.subarray(components * drawn, components * (drawn + 1)), components * i);
+    });
+    return { name, components, values: picked };
+  }
 }
 
 /** The material of each coarse triangle: the one that most of its corners have around them. */
-function materialsOf(corners, indices, numDrawn, materials) {
-  const { starts, triangles } = trianglesAround(indices, numDrawn);
+function materialsOf(corners, around, materials) {
   const votes = new Map();
   return Uint32Array.from({ length: corners.length / 3 }, (_, t) => {
     votes.clear();
     for (let k = 0; k < 3; ++k) {
-      const corner = corners[3 * t + k];
-      const share = 1 / (starts[corner + 1] - starts[corner] + 1); // below that of a corner
+      const triangles = around.of(corners[3 * t + k]);
+      const share = 0.25 / (triangles.length + 1); // all together below the vote of a corner
       const seen = new Set();
-      for (let i = starts[corner]; i < starts[corner + 1]; ++i) {
-        const number = materials[triangles[i]];
-        votes.set(number, (votes.get(number) ?? 0) + share / 4 + (seen.has(number) ? 0 : 1));
+      for (const triangle of triangles) {
+        const number = materials[triangle];
+        votes.set(number, (votes.get(number) ?? 0) + share + (seen.has(number) ? 0 : 1));
         seen.add(number);
       }
     }
@@ -105,40 +110,40 @@ function materialsOf(corners, indices, numDrawn, materials) {
  *   vertices    its place in coarse.vertices
  *   indices     triangles of these vertices
  *   attributes  as those of drawn()
- *   materialOf  as the one given, or undefined */
+ *   materialOf  as the one given, or undefined
+ * Takes time in proportion to the triangles of the whole mesh, usually. */
 export function coarseSurface({ drawn, materialOf }, coarse) {
   const numVertices = Math.max(drawn.vertices.at(-1) ?? -1, coarse.vertices.at(-1) ?? -1) + 1;
-  const starts = firstCopies(drawn.vertices, numVertices);
-  const uv = drawn.attributes.get("uv0");
-  const cost = misfit(chartsOf(drawn), uv?.components === 2 ? uv.values : undefined);
-  const corners = new Uint32Array(coarse.indices.length);
-  for (let i = 0; i < corners.length; i += 3) {
-    const vertices = [0, 1, 2].map((k) => coarse.vertices[coarse.indices[i + k]]);
-    chooseCorners(corners, i, vertices, starts, cost);
+  const around = new TrianglesAround(drawn);
+  const corners = new Corners(drawn, around, numVertices);
+  const chosen = new Uint32Array(coarse.indices.length);
+  for (let i = 0; i < chosen.length; i += 3) {
+    chosen.set(corners.choose([0, 1, 2].map((k) => coarse.vertices[coarse.indices[i + k]])), i);
   }
-  const { places, indices } = compacted(corners, drawn.vertices.length);
+  const { numbers, indices } = compacted(chosen, corners.numDrawn + corners.further.length);
+  const places = numbers.map((number) => corners.drawnOf(number));
   const hasMaterials = materialOf?.domain === "triangle" && materialOf.components === 1;
   return {
     places, indices,
     vertices: indicesIn(coarse.vertices, places.map((place) => drawn.vertices[place])),
-    attributes: new Map([...drawn.attributes].map(([name, set]) => [name, at(set, places)])),
-    materialOf: hasMaterials ? { domain: "triangle", components: 1, integers:
-      materialsOf(corners, drawn.indices, drawn.vertices.length, materialOf.integers) } : undefined,
+    attributes: new Map([...drawn.attributes].map(([name, set]) => [name, corners.at(set, numbers)])),
+    materialOf: hasMaterials ? { domain: "triangle", components: 1, integers: materialsOf(
+      chosen.map((number) => corners.drawnOf(number)), around, materialOf.integers) } : undefined,
   };
 }
 
-/** The vertices that are used, ascending, and triangles of these. */
-export function compacted(corners, numVertices) {
-  const numbers = new Uint32Array(numVertices);
-  for (const corner of corners) numbers[corner] = 1;
-  let count = 0;
-  const places = new Uint32Array(numbers.reduce((sum, one) => sum + one, 0));
-  for (let v = 0; v < numVertices; ++v) {
-    if (numbers[v] === 0) continue;
-    places[count] = v;
-    numbers[v] = count++;
+/** The numbers that are used, ascending, and the same corners as indices of these. */
+function compacted(corners, count) {
+  const indexOf = new Uint32Array(count);
+  for (const corner of corners) indexOf[corner] = 1;
+  const numbers = new Uint32Array(indexOf.reduce((sum, one) => sum + one, 0));
+  let used = 0;
+  for (let i = 0; i < count; ++i) {
+    if (indexOf[i] === 0) continue;
+    numbers[used] = i;
+    indexOf[i] = used++;
   }
-  return { places, indices: corners.map((corner) => numbers[corner]) };
+  return { numbers, indices: corners.map((corner) => indexOf[corner]) };
 }
 
 /** The index of each value in a list that has them all. */
@@ -146,13 +151,4 @@ export function indicesIn(list, values) {
   const indexOf = new Map();
   list.forEach((value, i) => indexOf.set(value, i));
   return values.map((value) => indexOf.get(value));
-}
-
-/** An attribute of drawn() at some of its vertices. */
-function at({ name, components, values }, places) {
-  const picked = new Float32Array(components * places.length);
-  places.forEach((place, i) => {
-    picked.set(values.subarray(components * place, components * (place + 1)), components * i);
-  });
-  return { name, components, values: picked };
 }

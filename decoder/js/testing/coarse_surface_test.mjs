@@ -37,14 +37,14 @@ function tube(rows, columns) {
     { name: "uv0", components: 2, values: Float32Array.from(uv) }]]) };
 }
 
-/** Every step-th row and column of the tube. */
-function coarseTube(rows, columns, step) {
+/** Every step-th row and column of the tube, the first at `shift`. */
+function coarseTube(rows, columns, step, shift = 0) {
   const vertices = [];
   for (let r = 0; r <= rows; r += step) {
-    for (let c = 0; c < columns; c += step) vertices.push(r * columns + c);
+    for (let c = shift; c < columns; c += step) vertices.push(r * columns + c);
   }
   const corners = gridTriangles(rows / step, columns / step,
-    (r, c) => r * step * columns + (c * step) % columns);
+    (r, c) => r * step * columns + (c * step + shift) % columns);
   return { vertices: Uint32Array.from(vertices), indices: indicesIn(vertices, corners) };
 }
 
@@ -71,6 +71,74 @@ test("NoTriangleCrossesASeam", () => {
           assert.equal(uv[2 * corner + c], drawn.attributes.get("uv0").values[2 * places[corner] + c]);
         }
       }
+    }
+  }
+});
+
+/** Places of u and the vertex that it is near to: equal, but for whole turns. */
+function turnsApart(u, column, columns) {
+  const apart = u - column / columns;
+  return Math.abs(apart - Math.round(apart));
+}
+
+test("TextureCoordinatesGoOnAcrossASeamThatIsNotKept", () => {
+  const next = random(2);
+  for (let i = 0; i < 30; ++i) {
+    const step = 2 + Math.floor(3 * next());
+    const rows = step * (1 + Math.floor(4 * next()));
+    const columns = step * (4 + Math.floor(5 * next()));
+    const drawn = tube(rows, columns);
+    // Columns beside the seam, which is at 0.
+    const shift = 1 + Math.floor((step - 1) * next());
+    const coarse = coarseTube(rows, columns, step, shift);
+    const { places, indices, attributes } = coarseSurface({ drawn }, coarse);
+    const uv = attributes.get("uv0").values;
+    for (let t = 0; t < indices.length; t += 3) {
+      const us = [0, 1, 2].map((k) => uv[2 * indices[t + k]]);
+      assert.ok(Math.max(...us) - Math.min(...us) <= step / columns + 1e-5, `${us}`);
+      for (let k = 0; k < 3; ++k) {
+        const vertex = drawn.vertices[places[indices[t + k]]];
+        assert.equal(vertex, coarse.vertices[coarse.indices[t + k]]);
+        assert.ok(turnsApart(us[k], vertex % columns, columns) < 1e-5);
+        assert.ok(Math.abs(uv[2 * indices[t + k] + 1] - Math.floor(vertex / columns) / rows) < 1e-5);
+      }
+    }
+  }
+});
+
+test("ATurnedAndMirroredSideIsContinued", () => {
+  // A flat sheet whose right half lies elsewhere in the texture, turned, mirrored or scaled.
+  const next = random(3);
+  for (let i = 0; i < 40; ++i) {
+    const [size, half] = [8, 4];
+    const [scale, angle, sign] = [0.5 + next(), 6 * next(), next() < 0.5 ? 1 : -1];
+    const [cos, sin] = [scale * Math.cos(angle), scale * Math.sin(angle)];
+    const vertices = [];
+    const uv = [];
+    const drawnOf = new Map();
+    for (let r = 0; r <= size; ++r) {
+      for (let c = 0; c <= size; ++c) {
+        for (const side of c < half ? [0] : c > half ? [1] : [0, 1]) {
+          drawnOf.set(`${r} ${c} ${side}`, vertices.length);
+          vertices.push(r * (size + 1) + c);
+          if (side === 0) uv.push(c, r);
+          else uv.push(cos * c - sin * sign * r + 30, sin * c + cos * sign * r - 7);
+        }
+      }
+    }
+    const triangles = [0, 1].flatMap((side) => [...gridTriangles(size, half, (r, c) =>
+      drawnOf.get(`${r} ${c + half * side} ${side}`))]);
+    const drawn = { vertices: Uint32Array.from(vertices), indices: Uint32Array.from(triangles),
+      attributes: new Map([["uv0", { name: "uv0", components: 2, values: Float32Array.from(uv) }]]) };
+    // One that has two corners on the left, and one on the right.
+    const corners = [[1, 1], [3, 6], [5, 2]].map(([r, c]) => r * (size + 1) + c);
+    const coarse = { vertices: Uint32Array.from(corners).sort(), indices: Uint32Array.of(0, 1, 2) };
+    const { attributes, indices, vertices: places } = coarseSurface({ drawn }, coarse);
+    for (const corner of indices) {
+      const vertex = coarse.vertices[places[corner]];
+      const [c, r] = [vertex % (size + 1), Math.floor(vertex / (size + 1))];
+      const [u, v] = attributes.get("uv0").values.subarray(2 * corner, 2 * corner + 2);
+      assert.ok(Math.hypot(u - c, v - r) < 1e-3, `${[u, v]} at ${[c, r]}`);
     }
   }
 });
