@@ -14,10 +14,12 @@ class Clips(ToolsTest):
         self.assertGreater(report["bits"]["metadata"], 0)
         info = self.ok("rlpcinfo", self.path("a.rlpc"), "--json").json()
         self.assertEqual(info["clips"],
-                         [{"name": "Run", "first_frame": 0, "num_frames": 20},
-                          {"name": "L\u00e4ufe: 2", "first_frame": 18, "num_frames": 1}])
+                         [{"name": "Run", "first_frame": 0, "num_frames": 20, "duration": 19 / 30},
+                          {"name": "L\u00e4ufe: 2", "first_frame": 18, "num_frames": 1,
+                           "duration": 0}])
+        self.assertEqual(info["duration"], 59 / 30)
         text = self.ok("rlpcinfo", self.path("a.rlpc")).out
-        self.assertRegex(text.decode(), r"\n  clip .* frames\n  Run .* 0-19\n")
+        self.assertRegex(text.decode(), r"\n  clip .* frames +seconds\n  Run .* 0-19 +0.633\n")
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("run.rlpd"), "--clip", "Run")
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("part.rlpd"), "--frames", "0-19")
         self.assertEqual(self.path("run.rlpd").read_bytes(), self.path("part.rlpd").read_bytes())

@@ -129,6 +129,51 @@ static void encode_strip(buffer* stream) {
   rlpc_encoder_close(encoder);
 }
 
+// Frames are 1/30 s apart; "wave" has frames 0 to 7, "rest" those from 4 on. Both ends are
+// frames.
+static void test_clip_times(rlpc_decoder* decoder) {
+  rlpc_clip rest;
+  CHECK(rlpc_decoder_find_clip(decoder, "rest", &rest) == RLPC_OK);
+  CHECK(strcmp(rest.name, "rest") == 0 && rest.first_frame == 4);
+  CHECK(rlpc_decoder_find_clip(decoder, "res", &rest) == RLPC_BAD_ARGUMENT);
+  CHECK_TEXT(rlpc_decoder_error_text(decoder), "no clip has this name");
+  CHECK(rlpc_decoder_find_clip(decoder, NULL, &rest) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_find_clip(decoder, "rest", NULL) == RLPC_BAD_ARGUMENT);
+
+  double seconds = 0.0;
+  CHECK(rlpc_decoder_duration(decoder, NULL, &seconds) == RLPC_OK);
+  CHECK(fabs(seconds - (FRAMES - 1) / 30.0) < 1e-12);
+  CHECK(rlpc_decoder_duration(decoder, &rest, &seconds) == RLPC_OK);
+  CHECK(fabs(seconds - (FRAMES - 5) / 30.0) < 1e-12);
+  const rlpc_clip beyond = {"", FRAMES - 2, 100};  // as a stream of unknown length may claim
+  CHECK(rlpc_decoder_duration(decoder, &beyond, &seconds) == RLPC_OK);
+  CHECK(fabs(seconds - 1 / 30.0) < 1e-12);
+  const rlpc_clip wrong[2] = {{"", FRAMES, 1}, {"", 0, 0}};
+  for (int i = 0; i < 2; ++i) {
+    CHECK(rlpc_decoder_duration(decoder, &wrong[i], &seconds) == RLPC_BAD_ARGUMENT);
+  }
+  CHECK(rlpc_decoder_duration(decoder, NULL, NULL) == RLPC_BAD_ARGUMENT);
+
+  // Each turn of "wave" takes 7 intervals.
+  const rlpc_clip wave = {"wave", 0, 8};
+  uint32_t frame = 99;
+  double place = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    CHECK(rlpc_decoder_frame_at(decoder, &wave, (k + 0.25) / 30.0, 1, &frame, &place) ==
+          RLPC_OK);
+    CHECK(frame == (uint32_t)(k % 7) && fabs(place - (k % 7 + 0.25)) < 1e-9);
+    CHECK(rlpc_decoder_frame_at(decoder, &rest, (k + 0.75) / 30.0, 0, &frame, NULL) == RLPC_OK);
+    CHECK(frame == (uint32_t)(k + 5 < FRAMES - 1 ? k + 5 : FRAMES - 1));
+  }
+  CHECK(rlpc_decoder_frame_at(decoder, &wave, 7 / 30.0, 0, &frame, &place) == RLPC_OK);
+  CHECK(frame == 7 && place == 7.0);
+  CHECK(rlpc_decoder_frame_at(decoder, &rest, -1.0, 1, &frame, &place) == RLPC_OK);
+  CHECK(frame == 4 && place == 4.0);
+  CHECK(rlpc_decoder_frame_at(decoder, NULL, 0.0, 2, &frame, NULL) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_frame_at(decoder, NULL, NAN, 0, &frame, NULL) == RLPC_BAD_ARGUMENT);
+  CHECK(rlpc_decoder_frame_at(decoder, NULL, 0.0, 0, NULL, NULL) == RLPC_BAD_ARGUMENT);
+}
+
 static void check_info(rlpc_decoder* decoder) {
   rlpc_stream_info info;
   CHECK(rlpc_decoder_info(decoder, &info, sizeof info) == RLPC_OK);
@@ -165,6 +210,7 @@ static void check_info(rlpc_decoder* decoder) {
   CHECK(rlpc_decoder_clip(decoder, 2, &clip) == RLPC_BAD_ARGUMENT);
   CHECK_TEXT(rlpc_decoder_error_text(decoder), "expected a clip below 2, got 2");
   CHECK(rlpc_decoder_clip(decoder, 0, NULL) == RLPC_BAD_ARGUMENT);
+  test_clip_times(decoder);
 }
 
 // Frames as floats in order, then as positions from the last to the first.

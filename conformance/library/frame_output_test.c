@@ -226,7 +226,7 @@ static void test_indices(void) {
 static void test_descriptions(void) {
   rlpc_stream_info info;
   CHECK(rlpc_decoder_info(decoder, &info, sizeof info) == RLPC_OK);
-  CHECK(fabs(info.duration_seconds - FRAMES / 30.0) < 1e-9);
+  CHECK(fabs(info.duration_seconds - (FRAMES - 1) / 30.0) < 1e-9);
   for (int c = 0; c < 3; ++c) CHECK(info.range_min[c] <= -1 && info.range_max[c] >= 10);
 
   float least[3], most[3];

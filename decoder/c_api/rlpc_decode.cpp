@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/c_api/c_handle.h"
+#include "common/io/clip_time.h"
 #include "decoder/c_api/decoder_handle.h"
 #include "decoder/describe_error.h"
 #include "decoder/rlpc_decoder.h"
@@ -143,6 +144,22 @@ rlpc_status next(rlpc_decoder& handle, std::span<std::int32_t> positions) {
   return *more ? RLPC_OK : RLPC_END;
 }
 
+// The frames of a clip that the stream has, as far as that is known; null: all. None with an
+// error of the handle.
+std::optional<Clip> frames_of(rlpc_decoder& handle, const rlpc_clip* clip) {
+  const std::uint32_t num_frames =
+      handle.decoder->num_frames().value_or(handle.decoder->header().num_frames);
+  if (clip == nullptr) return Clip{"", 0, num_frames};
+  if (clip->num_frames == 0 || clip->first_frame >= num_frames) {
+    handle.error.set(RLPC_BAD_ARGUMENT, clip->num_frames == 0
+                                            ? "the clip has no frames"
+                                            : "the clip begins after the last frame");
+    return std::nullopt;
+  }
+  return Clip{"", clip->first_frame,
+              std::min(clip->num_frames, num_frames - clip->first_frame)};
+}
+
 }  // namespace
 }  // namespace rlpc
 
@@ -225,8 +242,9 @@ rlpc_status rlpc_decoder_info(rlpc_decoder* decoder, rlpc_stream_info* info,
     ours.position_bits = static_cast<std::uint32_t>(h.position_bits);
     ours.has_vertex_order = decoder->decoder->has_vertex_order() ? 1 : 0;
     ours.num_layers = decoder->decoder->num_layers();
-    ours.duration_seconds = static_cast<double>(ours.num_frames) * h.frame_rate.denominator /
-                            h.frame_rate.numerator;
+    if (ours.num_frames > 0) {
+      ours.duration_seconds = rlpc::clip_seconds(h.frame_rate, ours.num_frames);
+    }
     const std::int32_t farthest = std::int32_t{1} << (h.position_bits - 1);
     for (std::size_t c = 0; c < 3; ++c) {
       ours.range_min[c] = rlpc::float_position(h.grid, c, -farthest);
@@ -294,6 +312,50 @@ rlpc_status rlpc_decoder_clip(rlpc_decoder* decoder, uint32_t index, rlpc_clip* 
     }
     const rlpc::Clip& found = clips[index];
     *clip = {found.name.c_str(), found.first_frame, found.num_frames};
+    return RLPC_OK;
+  });
+}
+
+rlpc_status rlpc_decoder_find_clip(rlpc_decoder* decoder, const char* name, rlpc_clip* clip) {
+  return rlpc::guarded(decoder, [&] {
+    if (name == nullptr || clip == nullptr) {
+      return decoder->error.set(RLPC_BAD_ARGUMENT,
+                                name == nullptr ? "name is null" : "clip is null");
+    }
+    for (const rlpc::Clip& one : decoder->decoder->clips()) {
+      if (std::strcmp(one.name.c_str(), name) != 0) continue;
+      *clip = {one.name.c_str(), one.first_frame, one.num_frames};
+      return RLPC_OK;
+    }
+    return decoder->error.set(RLPC_BAD_ARGUMENT, "no clip has this name");
+  });
+}
+
+rlpc_status rlpc_decoder_duration(rlpc_decoder* decoder, const rlpc_clip* clip,
+                                  double* seconds) {
+  return rlpc::guarded(decoder, [&] {
+    if (seconds == nullptr) return decoder->error.set(RLPC_BAD_ARGUMENT, "seconds is null");
+    const auto span = rlpc::frames_of(*decoder, clip);
+    if (!span) return RLPC_BAD_ARGUMENT;
+    *seconds = rlpc::clip_seconds(decoder->decoder->header().frame_rate, span->num_frames);
+    return RLPC_OK;
+  });
+}
+
+rlpc_status rlpc_decoder_frame_at(rlpc_decoder* decoder, const rlpc_clip* clip, double seconds,
+                                  uint32_t repeats, uint32_t* frame, double* place) {
+  return rlpc::guarded(decoder, [&] {
+    if (frame == nullptr || seconds != seconds || repeats > 1) {
+      return decoder->error.set(RLPC_BAD_ARGUMENT, frame == nullptr ? "frame is null"
+                                                   : repeats > 1 ? "repeats is neither 0 nor 1"
+                                                                 : "seconds is not a number");
+    }
+    const auto span = rlpc::frames_of(*decoder, clip);
+    if (!span) return RLPC_BAD_ARGUMENT;
+    const double within = rlpc::clip_place(decoder->decoder->header().frame_rate,
+                                           span->num_frames, seconds, repeats == 1);
+    *frame = span->first_frame + static_cast<std::uint32_t>(within + 0.5);
+    if (place != nullptr) *place = span->first_frame + within;
     return RLPC_OK;
   });
 }

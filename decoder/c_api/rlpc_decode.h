@@ -112,7 +112,7 @@ typedef struct rlpc_stream_info {
   // Vertex layers of the whole mesh, of which coarse_layers can select fewer; 0 in the Baseline
   // profile unless coarse_layers is set.
   uint32_t num_layers;
-  double duration_seconds;  // num_frames times the time of one; 0 if num_frames is
+  double duration_seconds;  // from the first frame to the last; 0 if num_frames is
   // The coordinates that the grid has. Those of every frame are within; how much smaller the
   // animation is, only its frames tell.
   float range_min[3];
@@ -195,6 +195,29 @@ RLPC_API uint32_t rlpc_decoder_num_damaged_units(const rlpc_decoder* decoder);
 // number, otherwise RLPC_BAD_ARGUMENT.
 RLPC_API uint32_t rlpc_decoder_num_clips(const rlpc_decoder* decoder);
 RLPC_API rlpc_status rlpc_decoder_clip(rlpc_decoder* decoder, uint32_t index, rlpc_clip* clip);
+// Looks up a clip by its name, which several clips may have: the first of them.
+// RLPC_BAD_ARGUMENT if there is none. The name in `clip` is valid as that of rlpc_decoder_clip.
+RLPC_API rlpc_status rlpc_decoder_find_clip(rlpc_decoder* decoder, const char* name,
+                                            rlpc_clip* clip);
+
+// Time. Frame k of a clip is its pose k intervals after its start; an interval is the
+// reciprocal of the frame rate. n frames thus take n - 1 intervals, and where a clip repeats,
+// its end is the start of the next turn: a loop whose last pose is its first does not halt.
+//   clip     as rlpc_decoder_clip returns it, or any other with a first_frame below num_frames
+//            (otherwise RLPC_BAD_ARGUMENT); null: the whole sequence. Frames that the stream
+//            does not have do not count.
+//
+// Computes the seconds from the first frame of a clip to its last.
+RLPC_API rlpc_status rlpc_decoder_duration(rlpc_decoder* decoder, const rlpc_clip* clip,
+                                           double* seconds);
+// Computes which frame of the sequence is nearest to a time of a clip.
+//   seconds  since the start of the clip; below 0 is 0, a NaN is RLPC_BAD_ARGUMENT
+//   repeats  1: the clip starts again at its end; 0: its last pose is held
+//   place    null, or receives the frame with a fraction, to interpolate: 12.25 is a quarter of
+//            the way from frame 12 to frame 13
+RLPC_API rlpc_status rlpc_decoder_frame_at(rlpc_decoder* decoder, const rlpc_clip* clip,
+                                           double seconds, uint32_t repeats, uint32_t* frame,
+                                           double* place);
 
 // GOFs: the one of a frame below num_frames; all, into up to max_gofs places, and their number
 // (gofs may be null if max_gofs is 0). They read the headers of units, from the GOF index on if

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "common/io/clip_time.h"
 #include "common/io/messages.h"
 #include "decoder/report/coarse_report.h"
 #include "decoder/report/html_page.h"
@@ -329,6 +330,7 @@ void print_json(const StreamInfo& s) {
       {"num_frames", h.num_frames},
       {"open_ended", h.open_end_flag},
       {"frame_rate", {h.frame_rate.numerator, h.frame_rate.denominator}},
+      {"duration", clip_seconds(h.frame_rate, h.num_frames)},
       {"grid_log2_step", h.grid.log2_step},
       {"grid_origin", h.grid.origin},
       {"position_bits", h.position_bits},
@@ -343,7 +345,8 @@ void print_json(const StreamInfo& s) {
   for (const Clip& clip : s.clips) {
     json["clips"].push_back({{"name", clip.name},
                              {"first_frame", clip.first_frame},
-                             {"num_frames", clip.num_frames}});
+                             {"num_frames", clip.num_frames},
+                             {"duration", clip_seconds(h.frame_rate, clip.num_frames)}});
   }
   s.attributes.add_to(json);
   if (!s.metadata.empty()) json["metadata"] = metadata_json(s.metadata);
@@ -355,14 +358,14 @@ std::string frames_text(const Clip& clip) {
   return std::to_string(clip.first_frame) + "-" + std::to_string(clip.last_frame());
 }
 
-void print_clips(const std::vector<Clip>& clips) {
+void print_clips(const std::vector<Clip>& clips, const FrameRate& rate) {
   if (clips.empty()) return;
   std::size_t width = 4;
   for (const Clip& clip : clips) width = std::max(width, printable(clip.name).size());
-  std::printf("\n  %-*s %16s\n", static_cast<int>(width), "clip", "frames");
+  std::printf("\n  %-*s %16s %10s\n", static_cast<int>(width), "clip", "frames", "seconds");
   for (const Clip& clip : clips) {
-    std::printf("  %-*s %16s\n", static_cast<int>(width), printable(clip.name).c_str(),
-                frames_text(clip).c_str());
+    std::printf("  %-*s %16s %10.3f\n", static_cast<int>(width), printable(clip.name).c_str(),
+                frames_text(clip).c_str(), clip_seconds(rate, clip.num_frames));
   }
 }
 
@@ -396,7 +399,7 @@ void print_table(const StreamInfo& s, bool with_gofs) {
                 bpvf(s, bits));
   }
   std::printf("  %-26s %12.0f %8s %10.4f\n", "all", total, "", bpvf(s, total));
-  print_clips(s.clips);
+  print_clips(s.clips, h.frame_rate);
   const std::vector<std::string> attributes = s.attributes.lines();
   if (!attributes.empty()) std::printf("\n  attributes\n");
   for (const std::string& line : attributes) std::printf("    %s\n", line.c_str());

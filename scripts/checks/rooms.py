@@ -67,7 +67,8 @@ ROOMS = {
                                "common/skinned_gof/recon/model_recon.h"} | _PUBLIC_DECODER,
     # Attributes and vertices as programs draw them.
     "decoder/surface": {"common", "common/attributes", "common/mesh"},
-    "decoder/c_api": {"common/c_api", "common/owned.h", "common/io/float_position.h",
+    "decoder/c_api": {"common/c_api", "common/owned.h", "common/io/clip_time.h",
+                      "common/io/float_position.h",
                       "common/mesh", "decoder/surface"} | _PUBLIC_DECODER,
     # Writers of mesh files know nothing of coding.
     "decoder/output": {"common", "common/attributes", "common/io", "common/mesh",
