@@ -167,7 +167,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--axes-a,--axes", o.axes, "As rlpcenc --axes, for A")
       ->option_text("X,Y,Z")
       ->group(more);
-  app.add_option("--fps", o.fps, "Frame rate of glTF files (default: 30)")
+  app.add_option("--fps", o.fps, "Frame rate of glTF files (default: as rlpcenc)")
       ->option_text("RATE")
       ->group(more);
   app.add_flag_callback(

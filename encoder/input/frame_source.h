@@ -120,7 +120,7 @@ inline constexpr std::uint64_t kUsualEncoderBytes = std::uint64_t{1} << 35;
 // writes it; otherwise that of the times of an MDD file; otherwise 30. The sample
 // rate of a PC2 file is not a frame rate: it counts frames per sample, is 1 in nearly every
 // file regardless of the speed, and is not used. Animations of glTF are sampled at the frame
-// rate.
+// rate: usually one on which their keys lie (gltf/frame_grid.h).
 struct InputOptions {
   std::string path;
   std::string points;  // empty: none

@@ -147,8 +147,10 @@ void add_input_options(CLI::App& app, EncodeCommandLine& line) {
                  "Point cache (.pc2, .mdd) with the frames of INPUT")
       ->option_text("FILE")
       ->group(kInput);
-  app.add_option("--fps", line.fps,
-                 "Frame rate: 25, 29.97 or 30000/1001 (default: from INPUT, otherwise 30)")
+  app.add_option(
+         "--fps", line.fps,
+         "Frame rate: 25, 29.97 or 30000/1001 (default: from INPUT, of glTF that of its keys; "
+         "otherwise 30)")
       ->option_text("RATE")
       ->group(kInput);
   app.add_option("--axes", line.axes,

@@ -91,18 +91,29 @@ def _floats(document, binary, accessor):
     return values
 
 
+def _on_grid(seconds, fps, milliseconds=False):
+    frames = seconds * fps
+    off = abs(frames - round(frames))
+    return (off <= min(1e-3 + frames * 2 ** -23, 0.02) or
+            milliseconds and off <= 0.00051 * fps)
+
+
 def clips(path):
-    """The clips as rlpcenc samples them: from the first key of each to the last whole step."""
+    """The clips as rlpcenc --fps samples them: from time 0 of each to its last key."""
     document, binary = read(path)
-    found, first = [], 0
+    keys = []
     for animation in document.get("animations", []):
         used = {channel["sampler"] for channel in animation["channels"]}
-        keys = [_floats(document, binary, document["accessors"][animation["samplers"][s]["input"]])
-                for s in used]
-        seconds = max(k[-1] for k in keys) - min(k[0] for k in keys)
-        count = math.floor(seconds * FPS * (1 + 2 ** -24) + 1e-3) + 1
-        found.append(Clip(count, first))
-        first += count
+        keys.append([t for s in used for t in _floats(
+            document, binary, document["accessors"][animation["samplers"][s]["input"]])])
+    times = [t for of_clip in keys for t in of_clip]
+    milliseconds = all(_on_grid(t, 1000) and _on_grid(t, FPS, True) for t in times)
+    found, first = [], 0
+    for of_clip in keys:
+        end = max(of_clip)
+        last = (round if _on_grid(end, FPS, milliseconds) else math.ceil)(end * FPS)
+        found.append(Clip(max(last, 1) + 1 if end > 0 else 1, first))
+        first += found[-1].num_frames
     return found or [Clip(1, 0)]
 
 

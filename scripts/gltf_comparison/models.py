@@ -22,7 +22,7 @@ TITLES = {"default": "RLPC", "high": "High", "all": "--gof all", "equal": "RLPC,
 
 DEFINITIONS = (
     "kB: 1000 bytes, of whole files: all clips, attributes, materials and images. gltfpack: "
-    "`gltfpack -cc`, then gzip -9. RLPC: `rlpcenc --animation all`; High: with --profile high, "
+    "`gltfpack -cc`, then gzip -9. RLPC: `rlpcenc --animation all --fps 30`; High: with --profile high, "
     "which is in preparation; equal KG: with --kg and the error of gltfpack's file.",
     "KG error: 100 * ||B - B'|| / ||B - E(B)||, B the positions of all vertices in all frames at "
     "30 frames a second, E(B) the mean vertex of each frame, by rlpccmp. gltfpack reorders and "
@@ -69,7 +69,8 @@ def run(toolbox, tool, *words, good=(0,)):
 def convert(toolbox, glb, folder, *options):
     """The animation as mesh and point cache, all clips joined, and its clips."""
     points = folder / f"{glb.stem}.pc2"
-    run(toolbox, "peer_codec", "convert", glb, "--animation", "all", *options, "-o", points)
+    run(toolbox, "peer_codec", "convert", glb, "--animation", "all", "--fps", gltf_file.FPS,
+        *options, "-o", points)
     clips = gltf_file.clips(glb)
     sequence = measure.open_sequence(points.with_suffix(".obj"), points)
     expected = sum(clip.num_frames for clip in clips)
@@ -144,8 +145,9 @@ class Bench:
     def ours(self, path, setting, options, sequence, folder):
         """The file, and the path of the decoded .glb."""
         stream, order = folder / f"{setting}.rlpc", folder / f"{setting}.order"
-        run(self.toolbox, "rlpcenc", path, "--animation", "all", *options, "-o", stream,
-            "--order-map", order, "--quiet", good=(0, 2))
+        run(self.toolbox, "rlpcenc", path, "--animation", "all", "--fps", gltf_file.FPS,
+            *options, "-o", stream, "--order-map", order, "--quiet",
+            good=(0, 2))
         glb = folder / f"{setting}.glb"
         run(self.toolbox, "rlpcdec", stream, "-o", glb, "--quiet")
         kg = kg_of(self.toolbox, sequence.mesh, "--points-a", sequence.points, stream,

@@ -1,7 +1,7 @@
 // node sample.mjs THREE IN.glb OUT SAMPLES
 //
 // What three.js draws of a .glb file: positions and normals of the corners of all triangles, at
-// SAMPLES, a JSON list of [clip, seconds from the first key of the clip]. Writes 64-bit floats:
+// SAMPLES, a JSON list of [clip, seconds]. Writes 64-bit floats:
 //   OUT.positions, OUT.normals   [samples][corners][3]
 //   OUT.uv                       [sets][corners][2], NaN where a mesh has none
 // and to standard output, as JSON: the number of corners, their vertices and materials, whether
@@ -98,7 +98,6 @@ function worldNormal(mesh, v, target) {
   return target.applyNormalMatrix(new THREE.Matrix3().getNormalMatrix(mesh.matrixWorld));
 }
 
-const start = clip => Math.min(...clip.tracks.map(track => track.times[0]));
 const positions = fs.openSync(`${output}.positions`, 'w');
 const normals = fs.openSync(`${output}.normals`, 'w');
 for (const [number, seconds] of JSON.parse(samples)) {
@@ -109,7 +108,7 @@ for (const [number, seconds] of JSON.parse(samples)) {
     action.setLoop(THREE.LoopOnce);
     action.clampWhenFinished = true;
     action.play();
-    mixer.setTime(start(clip) + seconds);
+    mixer.setTime(seconds);
   }
   gltf.scene.updateMatrixWorld(true);
   const at = [], towards = [];

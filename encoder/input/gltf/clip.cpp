@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <numeric>
 #include <system_error>
 
@@ -55,8 +54,8 @@ class ClipReader {
       clip.channels.push_back({channel.node, channel.path, read_track(channel)});
       if (errors_) break;
       const std::vector<float>& times = clip.channels.back().track.times;
-      clip.start = i == 0 ? times.front() : std::min<double>(clip.start, times.front());
-      clip.end = i == 0 ? times.back() : std::max<double>(clip.end, times.back());
+      clip.first = i == 0 ? times.front() : std::min<double>(clip.first, times.front());
+      clip.end = std::max<double>(clip.end, times.back());
     }
     return clip;
   }
@@ -157,16 +156,6 @@ std::vector<std::uint32_t> animations_of(const GltfDocument& document, const std
 }
 
 }  // namespace
-
-double GltfClip::num_frames(const FrameRate& rate) const {
-  const double steps = (end - start) * rate.numerator / rate.denominator;
-  return std::floor(steps * (1 + 0x1p-24) + 1e-3) + 1.0;
-}
-
-double GltfClip::time_of(std::uint32_t frame, const FrameRate& rate) const {
-  return static_cast<float>(start +
-                            static_cast<double>(frame) * rate.denominator / rate.numerator);
-}
 
 std::string gltf_animation_names(const GltfDocument& document) {
   constexpr std::size_t kMost = 20;

@@ -1,4 +1,4 @@
-// Animations of a glTF document as clips: tracks, and the times of frames.
+// Animations of a glTF document as clips: tracks of keys.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +21,9 @@ struct GltfClip {
 
   std::string name;
   std::vector<Channel> channels;
-  double start = 0.0;  // first time of all tracks, seconds
-  double end = 0.0;    // last time of all tracks
-
-  // Number of frames from start to end, with a tolerance of a thousandth of a frame plus the
-  // rounding of times to 32-bit floats.
-  double num_frames(const FrameRate& rate) const;
-  // The time of a frame, rounded like the times of keys so that a frame at a key matches it
-  // exactly.
-  double time_of(std::uint32_t frame, const FrameRate& rate) const;
+  // A clip begins at time 0: the first pose is held until the first key.
+  double first = 0.0;  // first time of all tracks, seconds; may be below 0, which is not played
+  double end = 0.0;    // last time of all tracks, at least 0
 };
 
 // The first animation names, quoted, for messages.

@@ -158,22 +158,25 @@ TEST_F(GltfSourceTest, CombinesScaleRotationTranslationAndParents) {
   expect_near(frame_of(*open(builder), 0), {10, 0, 0, 10, 2, 0, 7, 0, 0});
 }
 
-TEST_F(GltfSourceTest, SamplesFromTheFirstTimeToTheLastWholeStep) {
+TEST_F(GltfSourceTest, SamplesFromTimeZeroToTheLastPose) {
   GltfBuilder builder = moving_triangle();
   EXPECT_EQ(open(builder)->num_frames(), 61U);
   EXPECT_EQ(open(builder, {}, false, {4, 1})->num_frames(), 9U);
-  EXPECT_EQ(open(builder, {}, false, {30000, 1001})->num_frames(), 60U);
+  EXPECT_EQ(open(builder, {}, false, {30000, 1001})->num_frames(), 61U);
   const auto source = open(builder, {}, false, {4, 3});  // every 0.75 s
-  EXPECT_EQ(source->num_frames(), 3U);
+  EXPECT_EQ(source->num_frames(), 4U);
   for (const std::uint32_t f : {2U, 0U, 1U}) {
     EXPECT_FLOAT_EQ(frame_of(*source, f)[0], 0.75F * static_cast<float>(f));
   }
+  EXPECT_FLOAT_EQ(frame_of(*source, 3)[0], 2);
   const auto later = builder.add("SCALAR", std::vector<float>{10, 11, 12.2F});
   builder.json["animations"][0]["samplers"][0]["input"] = later;
   const auto late = open(builder, {}, false, {5, 1});
-  EXPECT_EQ(late->num_frames(), 12U);  // as 12.2 is to a float
-  EXPECT_FLOAT_EQ(frame_of(*late, 5)[0], 1);
-  EXPECT_NEAR(frame_of(*late, 11)[0], 2, 1e-5);
+  EXPECT_EQ(late->num_frames(), 62U);  // as 12.2 is to a float
+  EXPECT_FLOAT_EQ(frame_of(*late, 0)[0], 0);
+  EXPECT_FLOAT_EQ(frame_of(*late, 50)[0], 0);
+  EXPECT_FLOAT_EQ(frame_of(*late, 55)[0], 1);
+  EXPECT_FLOAT_EQ(frame_of(*late, 61)[0], 2);
   const auto end = builder.add("SCALAR", std::vector<float>{0, 1, 30725 / 30.0F});
   builder.json["animations"][0]["samplers"][0]["input"] = end;
   EXPECT_EQ(open(builder)->num_frames(), 30726U);  // 0.0015 of a frame short, as a float
@@ -182,32 +185,32 @@ TEST_F(GltfSourceTest, SamplesFromTheFirstTimeToTheLastWholeStep) {
 TEST_F(GltfSourceTest, ChoosesAnimations) {
   GltfBuilder builder = moving_triangle();
   builder.push("animations", {{"name", "0"}});
-  const std::size_t input = builder.add("SCALAR", std::vector<float>{5, 6});
-  const std::size_t output = builder.add("VEC3", std::vector<float>{0, 7, 0, 0, 7, 0});
+  const std::size_t input = builder.add("SCALAR", std::vector<float>{1, 2});
+  const std::size_t output = builder.add("VEC3", std::vector<float>{0, 7, 0, 0, 8, 0});
   builder.add_channel(0, "translation", input, output, "STEP");
   const FrameRate one{1, 1};
   EXPECT_EQ(open(builder, {}, false, one)->num_frames(), 3U);
   EXPECT_EQ(open(builder, {"Move"}, false, one)->num_frames(), 3U);
   for (const std::string second : {"1", "0"}) {  // by name before by index
     const auto source = open(builder, {second}, false, one);
-    EXPECT_EQ(source->num_frames(), 2U);
+    EXPECT_EQ(source->num_frames(), 3U);
     EXPECT_EQ(frame_of(*source, 0)[1], 7);
   }
   const auto all = open(builder, {"all"}, false, one);
-  ASSERT_EQ(all->num_frames(), 5U);
+  ASSERT_EQ(all->num_frames(), 6U);
   std::vector<float> first_vertex;
-  for (const std::uint32_t f : {4U, 0U, 2U, 3U}) {
+  for (const std::uint32_t f : {5U, 0U, 2U, 3U}) {
     const std::vector<float> xyz = frame_of(*all, f);
     first_vertex.insert(first_vertex.end(), xyz.begin(), xyz.begin() + 2);
   }
-  EXPECT_EQ(first_vertex, (std::vector<float>{0, 7, 0, 0, 2, 0, 0, 7}));
+  EXPECT_EQ(first_vertex, (std::vector<float>{0, 8, 0, 0, 2, 0, 0, 7}));
 }
 
 TEST_F(GltfSourceTest, NamesTheClips) {
   GltfBuilder builder = moving_triangle();
   for (const char* const name : {"L\u00e4ufe\n2", ""}) {
     builder.push("animations", {{"name", name}});
-    const std::size_t input = builder.add("SCALAR", std::vector<float>{5, 6});
+    const std::size_t input = builder.add("SCALAR", std::vector<float>{0, 1});
     const std::size_t output = builder.add("VEC3", std::vector<float>{0, 7, 0, 0, 7, 0});
     builder.add_channel(0, "translation", input, output, "STEP");
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "encoder/input/gltf/attributes.h"
+#include "encoder/input/gltf/frame_grid.h"
 #include "encoder/input/gltf/model_pose.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/weld.h"
@@ -21,14 +22,14 @@ using std::to_string;
 
 // The first frame of each clip in the sequence, then the total number of frames.
 InputResult<std::vector<std::uint32_t>> first_frames(const GltfModel& model,
-                                                     const FrameRate& rate,
+                                                     const GltfFrameGrid& grid,
                                                      const std::string& path,
                                                      const GltfLimits& limits) {
   const std::uint64_t most =
       std::min(limits.max_frames, limits.max_positions / model.num_vertices);
   std::vector<std::uint32_t> first{0};
   for (const GltfClip& clip : model.clips) {
-    const double frames = first.back() + clip.num_frames(rate);
+    const double frames = first.back() + grid.num_frames(clip);
     if (frames > static_cast<double>(most)) {
       return InputError{path + ": animations: found more frames of " +
                         to_string(model.num_vertices) + " vertices than the " +
@@ -91,13 +92,26 @@ std::vector<Clip> clips_of(const GltfModel& model, const std::vector<std::uint32
   return clips;
 }
 
+void add_notes_of_time(const GltfModel& model, const GltfFrameGrid& grid,
+                       std::vector<std::string>& notes) {
+  const auto num_early = std::count_if(model.clips.begin(), model.clips.end(),
+                                       [](const GltfClip& clip) { return clip.first < 0.0; });
+  if (num_early > 0) {
+    notes.push_back("dropped what " + to_string(num_early) +
+                    (num_early == 1 ? " animation has" : " animations have") +
+                    " before time 0, where animations begin");
+  }
+  if (!grid.note.empty()) notes.push_back(grid.note);
+}
+
 class GltfSource : public FrameSource {
  public:
-  GltfSource(Shape shape, std::string path, GltfModel model,
+  GltfSource(Shape shape, std::string path, GltfModel model, GltfFrameGrid grid,
              std::vector<std::uint32_t> first_frame)
       : FrameSource(std::move(shape)),
         path_(std::move(path)),
         model_(std::move(model)),
+        grid_(std::move(grid)),
         first_frame_(std::move(first_frame)) {}
 
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
@@ -105,7 +119,7 @@ class GltfSource : public FrameSource {
     const auto next = std::upper_bound(first_frame_.begin(), first_frame_.end(), frame);
     const auto number = static_cast<std::size_t>(next - first_frame_.begin()) - 1;
     const GltfClip* const clip = model_.clips.empty() ? nullptr : &model_.clips[number];
-    const double time = clip ? clip->time_of(frame - first_frame_[number], frame_rate()) : 0.0;
+    const double time = clip ? grid_.time_of(frame - first_frame_[number], *clip) : 0.0;
     const GltfPose pose = pose_of(model_.nodes, model_.scene, clip, time);
     PosedModel posed(model_, pose);
     for (const GltfModel::Instance& instance : model_.instances) {
@@ -122,6 +136,7 @@ class GltfSource : public FrameSource {
  private:
   std::string path_;
   GltfModel model_;
+  GltfFrameGrid grid_;
   std::vector<std::uint32_t> first_frame_;  // [clip], then the total number of frames
 };
 
@@ -131,18 +146,22 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
                                                     const GltfLimits& limits) {
   auto model = read_gltf_model(options, limits);
   if (!model) return model.error();
+  const GltfFrameGrid grid =
+      choose_frame_grid(model->clips, options.frame_rate, model->frame_rate);
+  align_steps(grid, model->clips);
   FrameSource::Shape shape;
-  shape.frame_rate = options.frame_rate.value_or(model->frame_rate.value_or(FrameRate{}));
+  shape.frame_rate = grid.rate;
   const std::string name = name_of_input(options.path);
-  auto first_frame = first_frames(*model, shape.frame_rate, name, limits);
+  auto first_frame = first_frames(*model, grid, name, limits);
   if (!first_frame) return first_frame.error();
   shape.num_vertices = static_cast<std::uint32_t>(model->num_vertices);
   shape.num_frames = first_frame->back();
   const GltfClip* const clip = model->clips.empty() ? nullptr : &model->clips[0];
-  const GltfPose first = pose_of(model->nodes, model->scene, clip, clip ? clip->start : 0.0);
+  const GltfPose first = pose_of(model->nodes, model->scene, clip, 0.0);
   const std::vector<bool> is_mirrored = mirrored_instances(*model, first);
   shape.triangles = triangles_of(*model, is_mirrored);
   shape.notes = model->notes;
+  add_notes_of_time(*model, grid, shape.notes);
   shape.asset = std::move(model->asset);
   shape.attributes = gltf_attributes(*model, shape.triangles, is_mirrored, first);
   shape.files = model->files;
@@ -150,7 +169,7 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   shape.memory_bytes = model->memory_bytes;
   if (!options.weld) drop_degenerate(shape);
   std::unique_ptr<FrameSource> source = std::make_unique<GltfSource>(
-      std::move(shape), name, std::move(*model), std::move(*first_frame));
+      std::move(shape), name, std::move(*model), grid, std::move(*first_frame));
   if (options.weld) {
     auto welded = weld(std::move(source));
     if (!welded) return welded;
