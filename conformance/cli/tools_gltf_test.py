@@ -267,6 +267,7 @@ class GltfTime(ToolsTest):
                  for rate, n in ((24, 12), (25, 20), (60, 31))]
         said, rate = self.check(clips, 1)
         self.assertIn("sampled at 60 frames per second, where those of 1 of 3 lie", said)
+        self.assertIn("600 has frames at all keys", said)
         self.assertEqual(rate, 60)
         self.check(clips, 0.002, "--fps", 600)
 

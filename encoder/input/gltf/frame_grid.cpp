@@ -16,9 +16,10 @@ using std::to_string;
 
 constexpr std::uint32_t kUsual = 30;
 constexpr std::uint32_t kLowest = 24;  // to search for; lower rates have multiples from here on
-constexpr std::uint32_t kHighest = 60;  // of rates that need no key at every other frame
-constexpr std::uint32_t kDense = 240;   // the highest of those that do
-constexpr double kLimit = 1000.0;       // frames per second, for short clips
+constexpr std::uint32_t kHighest = 60;       // of rates that need no key at every other frame
+constexpr std::uint32_t kDense = 240;        // the highest of those that do
+constexpr std::uint32_t kMostAdvised = 600;  // the least common multiple of 24, 25 and 60
+constexpr double kLimit = 1000.0;            // frames per second, for short clips
 
 double frames_at(double seconds, const FrameRate& rate) {
   return seconds * rate.numerator / rate.denominator;
@@ -131,23 +132,65 @@ std::string rate_text(const FrameRate& rate) {
   return shortest_text(static_cast<float>(std::round(value * 1000.0) / 1000.0));
 }
 
-// Of one clip: a rate that has a frame at its end.
-GltfFrameGrid grid_to_end(double end) {
-  const std::string lie = "the keys of the animation lie on no common frame rate: sampled at ";
-  const std::string remedy = "; --fps sets another";
-  const double steps = std::ceil(frames_at(end, {kUsual, 1}));
-  if (!(steps < 0x1p24)) return {{kUsual, 1}, false, lie + "30 frames per second" + remedy};
-  if (steps > kLimit * end) {
-    return {{static_cast<std::uint32_t>(kLimit), 1},
-            false,
-            lie + "1000 frames per second, as it is short" + remedy};
+// What is said where keys lie on no common rate: what was chosen, and a rate that has them all.
+std::string note_of(const FrameRate& rate, const std::string& why, const Keys& keys) {
+  const char* const of = keys.size() > 1 ? "animations lie" : "animation lie";
+  std::string note = std::string("the keys of the ") + of +
+                     " on no common frame rate: sampled at " + rate_text(rate) +
+                     " frames per second, " + why + "; --fps sets another rate";
+  for (std::uint32_t n = kHighest + 1; n <= kMostAdvised; ++n) {
+    if (!all_on(GltfFrameGrid{{n, 1}}, keys)) continue;
+    return note + ", " + to_string(n) + " has frames at all keys";
   }
-  const FrameRate rate = simplest_fraction(steps / end);
-  return {rate, false,
-          lie + rate_text(rate) + " frames per second, so that its end is a frame" + remedy};
+  return note;
 }
 
-// Of several: the rate at which the keys of most of them are, of most keys if there are
+// Whether half of the keys, or more, are at frames.
+bool half_on(const GltfFrameGrid& grid, const Keys& keys) {
+  std::size_t num_keys = 0;
+  std::size_t num_on = 0;
+  for (const std::vector<float>& times : keys) {
+    num_keys += times.size();
+    num_on += static_cast<std::size_t>(
+        std::count_if(times.begin(), times.end(), [&](float t) { return grid.holds(t); }));
+  }
+  return 2 * num_on >= num_keys;
+}
+
+// A common rate at which all clips end with a frame, if any. A single clip has rates near 30
+// that do, too, and takes another only if that has half of its keys.
+std::optional<GltfFrameGrid> grid_of_ends(const Keys& keys) {
+  Keys ends;
+  for (const std::vector<float>& times : keys) {
+    ends.emplace_back(times.end() - (times.empty() ? 0 : 1), times.end());
+  }
+  for (const FrameRate& rate : common_rates()) {
+    const GltfFrameGrid grid{rate};
+    const bool suits = keys.size() > 1 || rate == FrameRate{kUsual, 1} || half_on(grid, keys);
+    if (!suits || !all_on(grid, ends)) continue;
+    const char* const why = keys.size() > 1 ? "at which all of them end with a frame"
+                                            : "at which it ends with a frame";
+    return GltfFrameGrid{rate, false, note_of(rate, why, keys)};
+  }
+  return std::nullopt;
+}
+
+// Of one clip, the next rate from 30 on that has a frame at its end.
+GltfFrameGrid grid_to_end(double end, const Keys& keys) {
+  const double steps = std::ceil(frames_at(end, {kUsual, 1}));
+  FrameRate rate{kUsual, 1};
+  const char* why = "as usual";
+  if (steps > kLimit * end) {
+    rate.numerator = static_cast<std::uint32_t>(kLimit);
+    why = "as it is short";
+  } else if (steps < 0x1p24) {
+    rate = simplest_fraction(steps / end);
+    why = "at which it ends with a frame";
+  }
+  return {rate, false, note_of(rate, why, keys)};
+}
+
+// Of several, the rate at which the keys of most of them are, of most keys if there are
 // several.
 GltfFrameGrid grid_of_most(const Keys& keys) {
   GltfFrameGrid best{{kUsual, 1}};
@@ -171,12 +214,12 @@ GltfFrameGrid grid_of_most(const Keys& keys) {
     if (!best.holds(times.back())) late = std::max(late, std::ceil(end) - end);
   }
   late = late * best.rate.denominator / best.rate.numerator;
-  best.note = "the keys of the animations lie on no common frame rate: sampled at " +
-              rate_text(best.rate) + " frames per second, where those of " +
-              to_string(most.first) + " of " + to_string(num_moving) +
-              " lie; last poses come up to " +
-              shortest_text(static_cast<float>(std::ceil(late * 1000.0) / 1000.0)) +
-              " s late; --fps sets another rate, --animation chooses animations";
+  best.note =
+      note_of(best.rate,
+              "where those of " + to_string(most.first) + " of " + to_string(num_moving) +
+                  " lie, and last poses come up to " +
+                  shortest_text(static_cast<float>(std::ceil(late * 1e3) / 1e3)) + " s late",
+              keys);
   return best;
 }
 
@@ -215,7 +258,8 @@ GltfFrameGrid choose_frame_grid(const std::vector<GltfClip>& clips,
     return {*wanted, has_milliseconds};
   }
   if (const auto grid = shared_grid(keys, hint)) return *grid;
-  return clips.size() == 1 ? grid_to_end(clips[0].end) : grid_of_most(keys);
+  if (const auto grid = grid_of_ends(keys)) return *grid;
+  return clips.size() == 1 ? grid_to_end(clips[0].end, keys) : grid_of_most(keys);
 }
 
 void align_steps(const GltfFrameGrid& grid, std::vector<GltfClip>& clips) {

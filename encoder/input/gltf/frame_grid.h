@@ -34,8 +34,10 @@ struct GltfFrameGrid {
 //
 // Otherwise the rate at whose frames all keys of all clips are: 30 if it is one; or 24, 25, a
 // rate of NTSC, the lowest whole number from 26 on; above 60, only if half of the frames are at
-// keys. Where there is none, a note says what was chosen: for a single clip, the next rate from
-// 30 on that has a frame at its end; for several, the rate of most of them.
+// keys. Where there is none, a note says what was chosen: one of these rates up to 60 at which
+// all clips end with a frame (a single clip: 30, or one with half of its keys); otherwise for a
+// single clip, the next rate from 30 on at which it does, and for several, the rate of most of
+// them.
 GltfFrameGrid choose_frame_grid(const std::vector<GltfClip>& clips,
                                 const std::optional<FrameRate>& wanted,
                                 const std::optional<FrameRate>& hint);

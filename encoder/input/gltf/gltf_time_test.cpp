@@ -155,8 +155,8 @@ TEST_F(GltfTimeTest, SeveralRatesTakeThatOfMostClipsAndSaySo) {
   EXPECT_EQ(source->frame_rate(), (FrameRate{24, 1}));
   ASSERT_EQ(source->notes().size(), 1U);
   expect_text(source->notes()[0],
-              "sampled at 24 frames per second, where those of 2 of 4 lie; "
-              "last poses come up to 0.032 s late; --fps sets another");
+              "sampled at 24 frames per second, where those of 2 of 4 lie, and last poses "
+              "come up to 0.032 s late; --fps sets another rate");
   const std::vector<Clip>& clips = source->clips();
   EXPECT_EQ(clips[1].num_frames, 20U);  // the 18th and a part
   EXPECT_EQ(clips[3].num_frames, 9U);   // half of the 8th
@@ -164,6 +164,23 @@ TEST_F(GltfTimeTest, SeveralRatesTakeThatOfMostClipsAndSaySo) {
     const float last = std::vector<float>{11, 19, 19, 1}[i];
     EXPECT_FLOAT_EQ(frame_of(*source, clips[i].last_frame())[0], last);
   }
+}
+
+TEST_F(GltfTimeTest, EndsOfAllClipsAreFramesWhereTheirKeysAreNot) {
+  for (const auto& clips : std::vector<std::vector<std::vector<float>>>{
+           {{0, 0.1234F, 0.52F, 3.48F}}, {{0, 0.1234F, 3.48F}, frames_at(25, 20)}}) {
+    const auto source = open_times(clips);
+    EXPECT_EQ(source->frame_rate(), (FrameRate{25, 1}));
+    EXPECT_EQ(source->clips()[0].num_frames, 88U);
+    ASSERT_EQ(source->notes().size(), 1U);
+    expect_text(source->notes()[0], "sampled at 25 frames per second, at which");
+  }
+}
+
+TEST_F(GltfTimeTest, NamesARateThatHasAllKeys) {
+  const auto source = open_times({frames_at(24, 12), frames_at(25, 20), frames_at(60, 31)});
+  EXPECT_EQ(source->frame_rate(), (FrameRate{60, 1}));
+  expect_text(source->notes().at(0), "; --fps sets another rate, 600 has frames at all keys");
 }
 
 TEST_F(GltfTimeTest, RateOfTheFileIsTriedFirst) {
