@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "common/fixed_point.h"
+#include "encoder/frame_gof/on_grid.h"
 #include "encoder/gof/residual_choice.h"
 #include "encoder/math/det_math.h"
 
@@ -16,8 +17,6 @@ namespace {
 
 constexpr std::size_t kSample = 256;           // fixed: time; coordinates
 constexpr std::uint32_t kMostSearched = 1024;  // fixed: time; places
-
-double on_grid(double value) { return std::floor(value + 0.5); }
 
 // FNV-1a of the coordinates on the grid.
 std::uint64_t hash_on_grid(std::span<const double> xyz) {

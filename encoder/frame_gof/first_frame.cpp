@@ -8,6 +8,7 @@
 #include "common/fixed_point.h"
 #include "common/int_math.h"
 #include "encoder/frame_gof/frame_coding.h"
+#include "encoder/frame_gof/on_grid.h"
 #include "encoder/gof/lagrangian.h"
 #include "encoder/math/det_math.h"
 
@@ -21,7 +22,7 @@ std::vector<std::int32_t> points(std::span<const double> xyz, int position_bits,
   std::vector<std::int32_t> points;
   points.reserve(xyz.size());
   for (const double x : xyz) {
-    const double point = exact ? kPoint * static_cast<double>(round_to_int(x)) : kPoint * x;
+    const double point = exact ? kPoint * on_grid(x) : kPoint * x;
     points.push_back(
         static_cast<std::int32_t>(round_to_int(std::clamp(point, -limit, limit - 1.0))));
   }

@@ -9,6 +9,7 @@
 #include "common/fixed_point.h"
 #include "common/int_math.h"
 #include "common/parallel/for_each.h"
+#include "encoder/frame_gof/on_grid.h"
 #include "encoder/gof/residual_choice.h"
 
 namespace rlpc {
@@ -70,7 +71,7 @@ void FrameCoding::choose(Layer& layer, std::span<const double> xyz, CodedFrame* 
       if (to_nearest_) {
         residual[c] = rounded_residual((value * kPoint - start) / step, 0.5);
       } else if (settings_.exact_flag) {
-        residual[c] = rounded_residual((std::floor(value + 0.5) * kPoint - start) / step, 0.5);
+        residual[c] = rounded_residual((on_grid(value) * kPoint - start) / step, 0.5);
       } else {
         residual[c] = cheaper_residual(contexts.models(), contexts.expected(),
                                        (value * kPoint - start) / step);

@@ -8,6 +8,7 @@
 
 #include "common/fixed_point.h"
 #include "common/parallel/for_each.h"
+#include "encoder/frame_gof/on_grid.h"
 #include "encoder/gof/residual_choice.h"
 #include "encoder/math/det_math.h"
 #include "encoder/math/small_system.h"
@@ -202,7 +203,7 @@ void PatchSearch::predict_from_neighbours(std::span<const double> xyz, FrameReco
         Vec3i residual{};
         for (std::size_t c = 0; c < 3; ++c) {
           const std::size_t own = 3 * std::size_t{v} + c;
-          const double value = settings_.exact_flag ? std::floor(xyz[own] + 0.5) : xyz[own];
+          const double value = settings_.exact_flag ? on_grid(xyz[own]) : xyz[own];
           wanted_[own] = (value * kPoint - recon.start_of(v, motion, c)) / step_of(recon, v);
           residual[c] = rounded_residual(wanted_[own], round_up);
         }
@@ -257,29 +258,25 @@ PatchMotion PatchSearch::fit(std::size_t patch, std::span<const double> xyz,
   return motion;
 }
 
-// The squared error of a motion, in squared steps; `left`, if given, gets the residuals.
+// The squared error of a motion, in squared steps; `left`, if given, gets the residuals. They
+// are those from the decoder's integers: with other rounding, a patch without residuals would
+// be taken for exact though some of its coordinates are one step off.
 double PatchSearch::error(std::size_t patch, std::span<const double> xyz, std::uint32_t depth,
                           const FrameRecon& recon, const PatchMotion& motion,
                           std::vector<double>* left) const {
-  const auto reference = recon.reference();
-  const Vec3i centre = recon.patches().centre(patch);
   const auto moved =
       recon.patches().motion(patch, depth, settings_.step[depth], motion.residual);
   double sum = 0.0;
   for (const std::uint32_t v : vertices_[patch]) {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t own = 3 * std::size_t{v} + c;
-      double at = static_cast<double>(reference[own]) + moved[c];
-      for (std::size_t k = 0; k < 3; ++k) {
-        at += moved[kOffsetValues + 3 * c + k] / kMatrixOne *
-              (static_cast<double>(reference[3 * std::size_t{v} + k]) - centre[k]);
-      }
+      std::int64_t at = recon.patches().moved(moved, v, c);
       double value = xyz[own] * kPoint;
       if (settings_.exact_flag) {
-        value = std::floor(xyz[own] + 0.5) * kPoint;
-        at = std::floor(at / kPoint + 0.5) * kPoint;
+        value = on_grid(xyz[own]) * kPoint;
+        at = to_grid(at);
       }
-      const double of_axis = (value - at) / step_of(recon, v);
+      const double of_axis = (value - static_cast<double>(at)) / step_of(recon, v);
       if (left != nullptr) (*left)[own] = of_axis;
       sum += of_axis * of_axis;
     }

@@ -109,9 +109,8 @@ void PatchRecon::start_frame(std::span<const std::int32_t> reference, std::uint3
 }
 
 // 8.19.5 MovedByPatch( v, c )
-std::int32_t PatchRecon::moved(std::uint32_t v, std::size_t c) const {
+std::int32_t PatchRecon::moved(const Motion& motion, std::uint32_t v, std::size_t c) const {
   const std::uint16_t p = patch_of_vertex_[v];
-  const Motion& motion = last_[depth_][p];
   const std::int32_t* const own = &reference_[3 * std::size_t{v}];
   std::int64_t sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -35,7 +35,9 @@ class PatchRecon {
 
   PatchMode mode(std::uint32_t v) const { return modes_[patch_of_vertex_[v]]; }
   // MovedPoint of v in its patch.
-  std::int32_t moved(std::uint32_t v, std::size_t c) const;
+  std::int32_t moved(std::uint32_t v, std::size_t c) const {
+    return moved(last_[depth_][patch_of_vertex_[v]], v, c);
+  }
 
   // What an encoder chooses motions by: the centre of the reference frame, and the motion from
   // which residuals differ, offset and matrix.
@@ -49,6 +51,8 @@ class PatchRecon {
   // The motion that residuals lead to.
   Motion motion(std::size_t patch, std::uint32_t depth, std::uint32_t step,
                 const std::array<std::int32_t, kMotionValues>& residual) const;
+  // Returns the MovedPoint of v if its patch has this motion in the frame that has started.
+  std::int32_t moved(const Motion& motion, std::uint32_t v, std::size_t c) const;
 
  private:
   // For each patch; for those without vertices in the lowest layer group, of that group.
