@@ -200,6 +200,7 @@ rlpc::InputResult<rlpc::Distortion> compare(const rlpc::ComparisonPair& pair,
   rlpc::FrameSource& a = *pair.a.frames;
   rlpc::FrameSource& b = *pair.b.frames;
   const std::size_t values = 3 * std::size_t{a.num_vertices()};
+  std::vector<double> exact(values);
   std::vector<float> original(values);
   std::vector<float> decoded(values);
   std::vector<float> in_order(values);
@@ -208,13 +209,14 @@ rlpc::InputResult<rlpc::Distortion> compare(const rlpc::ComparisonPair& pair,
   rlpc::ProgressBar bar("comparing", progress);
   for (std::uint32_t f = 0; f < a.num_frames(); ++f) {
     if (auto error = a.read_frame(f, original)) return *error;
+    if (auto error = a.read_exact(f, exact)) return *error;
     if (auto error = b.read_frame(f, decoded)) return *error;
     for (std::size_t v = 0; v < map.size(); ++v) {
       for (std::size_t c = 0; c < 3; ++c) {
         in_order[3 * std::size_t{map[v]} + c] = decoded[3 * v + c];
       }
     }
-    metrics.add_frame(original, in_order);
+    metrics.add_frame(std::span<const double>(exact), in_order);
     surface.add_frame(original, in_order);
     if (view != nullptr && view->shows(f)) view->add_frame(original, in_order);
     bar.show((f + 1.0) / a.num_frames());

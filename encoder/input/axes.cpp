@@ -43,6 +43,12 @@ class TurnedSource final : public FrameSource {
     turn(axes_, xyz);
     return std::nullopt;
   }
+  std::optional<InputError> read_exact(std::uint32_t frame, std::span<double> xyz) override {
+    if (auto error = source_->read_exact(frame, xyz)) return error;
+    turn(axes_, xyz);
+    return std::nullopt;
+  }
+  bool is_finer_than_floats() const override { return source_->is_finer_than_floats(); }
 
   std::string file_of(std::uint32_t frame) const override { return source_->file_of(frame); }
 
@@ -69,15 +75,23 @@ class TurnedStream final : public FrameStream {
 
 }  // namespace
 
-void turn(const Axes& axes, std::span<float> xyz) {
+namespace {
+
+template <class T>
+void turn_all(const Axes& axes, std::span<T> xyz) {
   assert(xyz.size() % 3 == 0);
   for (std::size_t i = 0; i < xyz.size(); i += 3) {
-    const std::array<float, 3> old{xyz[i], xyz[i + 1], xyz[i + 2]};
+    const std::array<T, 3> old{xyz[i], xyz[i + 1], xyz[i + 2]};
     for (std::size_t a = 0; a < 3; ++a) {
       xyz[i + a] = axes.negative[a] ? -old[axes.from[a]] : old[axes.from[a]];
     }
   }
 }
+
+}  // namespace
+
+void turn(const Axes& axes, std::span<float> xyz) { turn_all(axes, xyz); }
+void turn(const Axes& axes, std::span<double> xyz) { turn_all(axes, xyz); }
 
 bool is_mirror(const Axes& axes) {
   bool odd = false;

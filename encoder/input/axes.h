@@ -15,6 +15,7 @@ namespace rlpc {
 
 // Writes the coordinates of the new axes over those of the old ones; xyz[3 * vertex + axis].
 void turn(const Axes& axes, std::span<float> xyz);
+void turn(const Axes& axes, std::span<double> xyz);
 
 // Whether a left hand becomes a right one.
 bool is_mirror(const Axes& axes);

@@ -1,5 +1,6 @@
 #include "encoder/input/frame_source.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -7,6 +8,7 @@
 #include <numeric>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "common/syntax/stream_format.h"
 #include "encoder/input/axes.h"
@@ -123,6 +125,13 @@ bool is_gltf(const std::string& path) {
 }
 
 }  // namespace
+
+std::optional<InputError> FrameSource::read_exact(std::uint32_t frame, std::span<double> xyz) {
+  std::vector<float> floats(xyz.size());
+  if (auto error = read_frame(frame, floats)) return error;
+  std::copy(floats.begin(), floats.end(), xyz.begin());
+  return std::nullopt;
+}
 
 bool has_clips(const InputOptions& options) {
   return options.points.empty() && is_gltf(options.path);

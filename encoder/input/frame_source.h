@@ -86,6 +86,11 @@ class FrameSource {
   // Reads the positions of one frame: xyz[3 * vertex + axis], 3 * num_vertices() values, in
   // units; all finite on success. frame < num_frames(), in any order.
   virtual std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) = 0;
+  // The same frame as the numbers of the input, before they become floats: what errors are
+  // measured against. By default, the floats.
+  virtual std::optional<InputError> read_exact(std::uint32_t frame, std::span<double> xyz);
+  // Whether read_exact() may differ from read_frame().
+  virtual bool is_finer_than_floats() const { return false; }
   // The name, for messages, of the file that holds a frame.
   virtual std::string file_of(std::uint32_t /*frame*/) const { return "input"; }
 

@@ -11,7 +11,9 @@
 namespace rlpc {
 
 struct SingleMesh {
-  std::vector<float> xyz;               // 3 per vertex, at least one vertex, all finite
+  std::vector<float> xyz;  // 3 per vertex, at least one vertex, all finite
+  // What the numbers in the file exceed the floats in xyz by; where it is shorter, by nothing.
+  std::vector<float> left{};
   std::vector<Triangle> triangles;      // polygons as fans from their first corner
   std::optional<FrameRate> frame_rate;  // of a comment "frame_rate N/D" in the file
   SourceAttributes attributes{};        // of the triangles
@@ -23,7 +25,7 @@ struct SingleMesh {
 
   // Of what grows while a file is read.
   std::uint64_t memory_bytes() const {
-    return std::uint64_t{xyz.capacity()} * sizeof(float) +
+    return (std::uint64_t{xyz.capacity()} + left.capacity()) * sizeof(float) +
            std::uint64_t{triangles.capacity()} * sizeof(Triangle) + attributes.memory_bytes();
   }
 };

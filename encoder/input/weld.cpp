@@ -72,12 +72,25 @@ class WeldedSource : public FrameSource {
     return std::nullopt;
   }
 
+  std::optional<InputError> read_exact(std::uint32_t frame, std::span<double> xyz) override {
+    exact_.resize(all_.size());
+    if (auto error = source_->read_exact(frame, exact_)) return error;
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        xyz[3 * v + c] = exact_[3 * std::size_t{vertices_[v]} + c];
+      }
+    }
+    return std::nullopt;
+  }
+  bool is_finer_than_floats() const override { return source_->is_finer_than_floats(); }
+
   std::string file_of(std::uint32_t frame) const override { return source_->file_of(frame); }
 
  private:
   std::unique_ptr<FrameSource> source_;
   std::vector<std::uint32_t> vertices_;  // [welded vertex], index in the source
   std::vector<float> all_;
+  std::vector<double> exact_;
 };
 
 // Removes triangles, and what belongs to them.

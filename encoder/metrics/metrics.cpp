@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double squared_distance(std::span<const float> a, std::span<const float> b,
-                        std::size_t vertex) {
+template <class T>
+double squared_distance(std::span<const double> a, std::span<const T> b, std::size_t vertex) {
   double sum = 0;
   for (std::size_t i = 3 * vertex; i < 3 * vertex + 3; ++i) {
-    const double d = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+    const double d = a[i] - static_cast<double>(b[i]);
     sum += d * d;
   }
   return sum;
@@ -23,7 +23,7 @@ double squared_distance(std::span<const float> a, std::span<const float> b,
 
 // Sets the mean vertex, and the sum of squared distances from it. Coordinates are taken
 // relative to the first vertex, so that the sum is exactly 0 if all vertices coincide.
-void measure_spread(std::span<const float> xyz, FrameMetrics& frame) {
+void measure_spread(std::span<const double> xyz, FrameMetrics& frame) {
   const std::size_t count = xyz.size() / 3;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double first = xyz[axis];
@@ -56,6 +56,12 @@ MetricsAccumulator::MetricsAccumulator(std::uint32_t num_vertices, Keep keep)
 }
 
 void MetricsAccumulator::add_frame(std::span<const float> original,
+                                   std::span<const float> decoded) {
+  const std::vector<double> exact(original.begin(), original.end());
+  add_frame(std::span<const double>(exact), decoded);
+}
+
+void MetricsAccumulator::add_frame(std::span<const double> original,
                                    std::span<const float> decoded) {
   assert(original.size() == 3 * std::size_t{num_vertices_} &&
          decoded.size() == original.size());
@@ -109,11 +115,11 @@ double MetricsAccumulator::mean_squared(const FrameMetrics& frame) const {
   return frame.squared_error / (3 * vertices);
 }
 
-void MetricsAccumulator::add_motion(std::span<const float> original, FrameMetrics& frame) {
+void MetricsAccumulator::add_motion(std::span<const double> original, FrameMetrics& frame) {
   frame.moved_vertices = 0;
   const bool is_first = previous_.empty();
   for (std::uint32_t v = 0; !is_first && v < num_vertices_; ++v) {
-    const double squared = squared_distance(original, previous_, v);
+    const double squared = squared_distance<double>(original, previous_, v);
     max_squared_displacement_ = std::max(max_squared_displacement_, squared);
     if (squared > 0) ++frame.moved_vertices;
   }
@@ -152,8 +158,7 @@ Metrics MetricsAccumulator::result() const {
   m.frames = frames_;
   double squared_diagonal = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double side =
-        static_cast<double>(box_max_[axis]) - static_cast<double>(box_min_[axis]);
+    const double side = box_max_[axis] - box_min_[axis];
     squared_diagonal += side * side;
   }
   m.diagonal = std::sqrt(squared_diagonal);

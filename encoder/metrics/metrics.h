@@ -66,11 +66,13 @@ class MetricsAccumulator {
                               Keep keep = kFrames);
 
   // Before the first frame: the original of the frame before it, which is not counted.
-  void follow(std::span<const float> original) {
+  void follow(std::span<const double> original) {
     previous_.assign(original.begin(), original.end());
   }
-  std::span<const float> last_original() const { return previous_; }
-  // Adds the next frame; both have 3 * num_vertices finite values in the same vertex order.
+  std::span<const double> last_original() const { return previous_; }
+  // Adds the next frame; both have 3 * num_vertices finite values in the same vertex order. The
+  // original may be finer than floats.
+  void add_frame(std::span<const double> original, std::span<const float> decoded);
   void add_frame(std::span<const float> original, std::span<const float> decoded);
 
   // Adds the frames of `next`, at least one, which keeps frames and follows the last one here.
@@ -81,7 +83,7 @@ class MetricsAccumulator {
   Metrics result() const;
 
  private:
-  void add_motion(std::span<const float> original, FrameMetrics& frame);
+  void add_motion(std::span<const double> original, FrameMetrics& frame);
   void add_to_totals(const FrameMetrics& frame);
   double mean_squared(const FrameMetrics& frame) const;
   double sequence_spread() const;
@@ -99,10 +101,10 @@ class MetricsAccumulator {
   double squared_mean_sum_ = 0;
   double log_sum_ = 0;  // sum of log10(mean_squared()) over inexact frames
   std::uint32_t num_inexact_ = 0;
-  std::vector<float> previous_;
+  std::vector<double> previous_;
   double max_squared_displacement_ = 0;
-  float box_min_[3] = {};
-  float box_max_[3] = {};
+  double box_min_[3] = {};
+  double box_max_[3] = {};
 };
 
 // Bits per vertex per frame, from the size of a file.

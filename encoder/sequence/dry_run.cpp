@@ -33,12 +33,20 @@ class StretchSource final : public FrameSource {
         stretch_(stretch) {}
 
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
-    const std::uint64_t spare = source_.num_frames() - stretch_;
-    const std::uint64_t first = spare * (frame / stretch_) / (kStretches - 1);
-    return source_.read_frame(static_cast<std::uint32_t>(first) + frame % stretch_, xyz);
+    return source_.read_frame(frame_of(frame), xyz);
   }
+  std::optional<InputError> read_exact(std::uint32_t frame, std::span<double> xyz) override {
+    return source_.read_exact(frame_of(frame), xyz);
+  }
+  bool is_finer_than_floats() const override { return source_.is_finer_than_floats(); }
 
  private:
+  std::uint32_t frame_of(std::uint32_t frame) const {
+    const std::uint64_t spare = source_.num_frames() - stretch_;
+    const std::uint64_t first = spare * (frame / stretch_) / (kStretches - 1);
+    return static_cast<std::uint32_t>(first) + frame % stretch_;
+  }
+
   FrameSource& source_;
   std::uint32_t stretch_;
 };

@@ -195,7 +195,7 @@ std::optional<EncodedGof> SequenceCoding::encode_with(const KeptModel& model,
 // there is none.
 InputResult<std::vector<SequenceCoding::MeasuredFrame>> SequenceCoding::measure_frames(
     const SharedSource& source, const GofSpan& span, const GofSpan& some,
-    const DecodeFrame& decode, std::span<const float> before) const {
+    const DecodeFrame& decode, std::span<const double> before) const {
   const std::size_t values = std::size_t{header_.num_vertices} * 3;
   std::vector<MeasuredFrame> frames(some.count,
                                     {{}, {}, MetricsAccumulator(header_.num_vertices)});
@@ -222,7 +222,7 @@ InputResult<std::vector<Bytes>> SequenceCoding::measure(const SharedSource& sour
                                                         const DecodeFrame& decode,
                                                         MetricsAccumulator& metrics) const {
   constexpr std::uint32_t kTogether = 16;  // fixed: memory
-  std::vector<float> before(metrics.last_original().begin(), metrics.last_original().end());
+  std::vector<double> before(metrics.last_original().begin(), metrics.last_original().end());
   if (before.empty() && span.first > 0) {
     before.resize(std::size_t{header_.num_vertices} * 3);
     if (auto error = source.read_frame(span.first - 1, before)) return *error;

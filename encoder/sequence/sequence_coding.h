@@ -52,9 +52,10 @@ struct SharedSource {
   FrameSource& source;
   std::mutex& reading;
 
-  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) const {
+  // As the numbers of the input, which errors are measured against.
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<double> xyz) const {
     const std::lock_guard lock(reading);
-    return source.read_frame(frame, xyz);
+    return source.read_exact(frame, xyz);
   }
 };
 
@@ -99,14 +100,14 @@ class SequenceCoding {
  private:
   struct MeasuredFrame {
     std::vector<std::int32_t> positions;
-    std::vector<float> original;
+    std::vector<double> original;
     MetricsAccumulator metrics;
   };
   InputResult<std::vector<MeasuredFrame>> measure_frames(const SharedSource& source,
                                                          const GofSpan& span,
                                                          const GofSpan& some,
                                                          const DecodeFrame& decode,
-                                                         std::span<const float> before) const;
+                                                         std::span<const double> before) const;
   void to_input(std::span<const std::int32_t> positions, std::span<float> decoded) const;
 
   SequenceHeader header_;

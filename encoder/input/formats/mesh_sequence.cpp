@@ -143,18 +143,33 @@ class MeshSequence : public FrameSource {
 
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
     assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
-    const auto mesh =
-        read_mesh(paths_[frame], max_memory_bytes_, !has_compared_attributes_[frame]);
+    const auto mesh = read_file_of(frame);
     if (!mesh) return mesh.error();
-    if (auto error = compare_with_first(frame, *mesh)) return error;
-    if (!has_compared_attributes_[frame]) compare_attributes(frame, mesh->attributes);
     std::copy(mesh->xyz.begin(), mesh->xyz.end(), xyz.begin());
     return std::nullopt;
   }
+  std::optional<InputError> read_exact(std::uint32_t frame, std::span<double> xyz) override {
+    const auto mesh = read_file_of(frame);
+    if (!mesh) return mesh.error();
+    for (std::size_t i = 0; i < xyz.size(); ++i) {
+      xyz[i] = mesh->xyz[i];
+      if (i < mesh->left.size()) xyz[i] += mesh->left[i];
+    }
+    return std::nullopt;
+  }
+  bool is_finer_than_floats() const override { return true; }
 
   std::string file_of(std::uint32_t frame) const override { return paths_[frame]; }
 
  private:
+  InputResult<SingleMesh> read_file_of(std::uint32_t frame) {
+    auto mesh = read_mesh(paths_[frame], max_memory_bytes_, !has_compared_attributes_[frame]);
+    if (!mesh) return mesh;
+    if (auto error = compare_with_first(frame, *mesh)) return *error;
+    if (!has_compared_attributes_[frame]) compare_attributes(frame, mesh->attributes);
+    return mesh;
+  }
+
   std::optional<InputError> compare_with_first(std::uint32_t frame,
                                                const SingleMesh& mesh) const {
     const auto differs = [&](const std::string& here, const std::string& there) {

@@ -94,7 +94,8 @@ std::string quoted(std::string_view word) {
   return text + (word.size() > kLongest ? "...\"" : "\"");
 }
 
-float parse_coordinate(std::string_view word, std::optional<std::string>& problem) {
+float parse_coordinate(std::string_view word, std::optional<std::string>& problem,
+                       float* left) {
   const char* const first = word.data() + (word.starts_with('+') && word.size() > 1 ? 1 : 0);
   const char* const last = word.data() + word.size();
   float value = 0;
@@ -106,6 +107,10 @@ float parse_coordinate(std::string_view word, std::optional<std::string>& proble
     problem = quoted(word) + " is too large for a 32-bit float (3.4e38)";
   } else if (!std::isfinite(value)) {
     problem = quoted(word) + " is not finite; every coordinate must be";
+  } else if (left != nullptr) {
+    double exact = value;
+    std::from_chars(first, last, exact);
+    *left = static_cast<float>(exact - value);
   }
   return value;
 }

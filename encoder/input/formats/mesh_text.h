@@ -44,8 +44,10 @@ class TextWords {
 // A word for error messages: quoted, made printable, and shortened.
 std::string quoted(std::string_view word);
 
-// Parses all of `word` as a finite float, correctly rounded; otherwise sets `problem`.
-float parse_coordinate(std::string_view word, std::optional<std::string>& problem);
+// Parses all of `word` as a finite float, correctly rounded; otherwise sets `problem`. left: if
+// given, set to what the number exceeds the float by.
+float parse_coordinate(std::string_view word, std::optional<std::string>& problem,
+                       float* left = nullptr);
 
 // All of `word` as a finite number; none: it is not one.
 std::optional<double> parse_number(std::string_view word);

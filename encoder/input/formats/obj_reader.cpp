@@ -106,7 +106,9 @@ class ObjParser {
       return fail(words_.line(), "more than 2^32 - 1 vertices");
     }
     for (int axis = 0; axis < 3 && !error_; ++axis) {
-      push(read_float("a vertex needs three coordinates"), mesh_.xyz);
+      float left = 0.0F;
+      push(read_float("a vertex needs three coordinates", &left), mesh_.xyz);
+      push(left, mesh_.left);
     }
     if (!error_ && limit_.with_attributes) read_colour();
   }
@@ -127,14 +129,14 @@ class ObjParser {
     }
   }
 
-  float read_float(const char* if_none) {
+  float read_float(const char* if_none, float* left = nullptr) {
     const std::string_view word = words_.next();
     if (word.empty()) {
       fail(words_.line(), if_none);
       return 0;
     }
     std::optional<std::string> problem;
-    const float value = parse_coordinate(word, problem);
+    const float value = parse_coordinate(word, problem, left);
     if (problem) fail(words_.line(), *problem);
     return value;
   }

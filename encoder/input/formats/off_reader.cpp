@@ -87,7 +87,8 @@ class OffParser {
       } else if (!limit_.leaves_room(mesh_, mesh_.xyz)) {
         problem = memory_problem(limit_.of_all);
       } else {
-        mesh_.xyz.push_back(parse_coordinate(word, problem));
+        mesh_.left.push_back(0.0F);
+        mesh_.xyz.push_back(parse_coordinate(word, problem, &mesh_.left.back()));
       }
       if (problem) fail(*problem);
       if (axis < 2) word = words_.next();

@@ -32,8 +32,11 @@ class TextBody {
 
   float coordinate(PlyType) {
     const std::string_view word = next();
-    return problem_ ? 0 : parse_coordinate(word, problem_);
+    left_ = 0.0F;
+    return problem_ ? 0 : parse_coordinate(word, problem_, &left_);
   }
+  // What the number exceeds the last coordinate by.
+  float left() const { return left_; }
 
   std::int64_t integer(PlyType) {
     const std::string_view word = next();
@@ -68,6 +71,7 @@ class TextBody {
   TextWords words_;
   std::uint64_t bytes_;
   std::uint64_t line_ = 0;
+  float left_ = 0.0F;
   std::optional<std::string> problem_;
 };
 
@@ -86,11 +90,9 @@ class BinaryBody {
   static std::uint64_t spare_bytes() { return 0; }
 
   float coordinate(PlyType type) {
-    if (!is_ply_float(type)) return static_cast<float>(integer(type));
-    const std::uint64_t bits = take(type);
-    const float value = type == PlyType::kF64
-                            ? static_cast<float>(std::bit_cast<double>(bits))
-                            : std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+    const double exact = number(type);
+    const auto value = static_cast<float>(exact);
+    left_ = static_cast<float>(exact - value);
     if (std::isfinite(value)) return value;
     if (!problem_) {
       problem_ = std::string("a coordinate is ") +
@@ -99,6 +101,8 @@ class BinaryBody {
     }
     return 0;
   }
+
+  float left() const { return left_; }
 
   std::int64_t integer(PlyType type) {
     const std::uint64_t bits = take(type);
@@ -133,6 +137,14 @@ class BinaryBody {
     return !problem_;
   }
 
+  double number(PlyType type) {
+    if (!is_ply_float(type)) return static_cast<double>(integer(type));
+    const std::uint64_t bits = take(type);
+    return type == PlyType::kF64
+               ? std::bit_cast<double>(bits)
+               : double{std::bit_cast<float>(static_cast<std::uint32_t>(bits))};
+  }
+
   std::uint64_t take(PlyType type) {
     if (!has(type, 1)) return 0;
     const std::size_t size = ply_bytes(type);
@@ -149,6 +161,7 @@ class BinaryBody {
   std::size_t pos_;
   std::size_t last_ = 0;  // first byte of the last value
   bool little_endian_;
+  float left_ = 0.0F;
   std::optional<std::string> problem_;
 };
 

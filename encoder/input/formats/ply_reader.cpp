@@ -117,12 +117,20 @@ class PlyReader {
           skip(p);
         } else if (role.kind == PlyRole::Kind::kPosition) {
           mesh_.xyz[3 * v + role.component] = body_.coordinate(p.type);
+          keep_left(3 * v + role.component);
         } else {
           attributes_.set_of_vertex(v, role, body_.coordinate(p.type));
         }
         if (failed()) return;
       }
     }
+  }
+
+  // Few files have numbers that floats do not hold.
+  void keep_left(std::size_t coordinate) {
+    if (body_.left() == 0.0F) return;
+    if (mesh_.left.empty()) mesh_.left.resize(mesh_.xyz.size());
+    mesh_.left[coordinate] = body_.left();
   }
 
   void read_faces(const PlyElement& element) {

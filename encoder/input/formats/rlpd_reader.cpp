@@ -12,6 +12,7 @@
 #include "common/io/float_position.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/piped_frames.h"
+#include "encoder/math/det_math.h"
 
 namespace rlpc {
 
@@ -130,19 +131,34 @@ class RlpdSource : public FrameSource {
 
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
     assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
-    bytes_.resize(xyz.size() * 4);
-    const std::uint64_t offset =
-        header_.bytes_before_frames() + frame * header_.overhead_bytes();
-    if (auto error = file_.read(offset, bytes_)) return error;
+    if (auto error = read_bytes(frame)) return error;
     for (std::size_t i = 0; i < xyz.size(); ++i) {
       xyz[i] = float_position(header_.grid, i % 3, load_i32(bytes_, 4 * i));
     }
     return check_finite(file_.path(), frame, xyz);
   }
+  // Positions have up to 28 bits, floats 24.
+  std::optional<InputError> read_exact(std::uint32_t frame, std::span<double> xyz) override {
+    if (auto error = read_bytes(frame)) return error;
+    for (std::size_t i = 0; i < xyz.size(); ++i) {
+      const double steps =
+          static_cast<double>(load_i32(bytes_, 4 * i)) + header_.grid.origin[i % 3];
+      xyz[i] = steps * exact_exp2(header_.grid.log2_step);
+    }
+    return std::nullopt;
+  }
+  bool is_finer_than_floats() const override { return true; }
 
   std::string file_of(std::uint32_t /*frame*/) const override { return file_.path(); }
 
  private:
+  std::optional<InputError> read_bytes(std::uint32_t frame) {
+    bytes_.resize(3 * std::size_t{num_vertices()} * 4);
+    const std::uint64_t offset =
+        header_.bytes_before_frames() + frame * header_.overhead_bytes();
+    return file_.read(offset, bytes_);
+  }
+
   InputFile file_;
   RlpdHeader header_;
   std::vector<char> bytes_;

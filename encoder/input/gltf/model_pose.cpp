@@ -65,6 +65,13 @@ std::vector<Affine> joint_maps(const GltfModel& model, std::uint32_t skin,
 }
 
 void PosedModel::positions(const GltfModel::Instance& instance, std::span<float> out) {
+  placed_.resize(out.size());
+  positions(instance, std::span<double>(placed_));
+  std::transform(placed_.begin(), placed_.end(), out.begin(),
+                 [](double x) { return static_cast<float>(x); });
+}
+
+void PosedModel::positions(const GltfModel::Instance& instance, std::span<double> out) {
   const GltfGeometry& geometry = model_.geometries[instance.geometry];
   morph(geometry.base, geometry.targets, target_weights(model_, instance.node, pose_),
         morphed_);

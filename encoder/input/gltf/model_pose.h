@@ -24,6 +24,7 @@ class PosedModel {
   PosedModel(const GltfModel& model, const GltfPose& pose) : model_(model), pose_(pose) {}
 
   // out: xyz of the vertices of the instance.
+  void positions(const GltfModel::Instance& instance, std::span<double> out);
   void positions(const GltfModel::Instance& instance, std::span<float> out);
 
  private:
@@ -31,6 +32,7 @@ class PosedModel {
   const GltfPose& pose_;
   std::map<std::uint32_t, std::vector<Affine>> joints_;  // by skin
   std::vector<double> morphed_;
+  std::vector<double> placed_;
 };
 
 // The normals of all vertices, in the order of instances, as viewers make them in a pose: those

@@ -207,15 +207,15 @@ void morph(std::span<const float> base, std::span<const GltfGeometry::Target> ta
   }
 }
 
-void place(const std::vector<double>& positions, const Affine& node, std::span<float> out) {
+void place(const std::vector<double>& positions, const Affine& node, std::span<double> out) {
   for (std::size_t i = 0; i < positions.size(); i += 3) {
     const GltfVec3 p = node({positions[i], positions[i + 1], positions[i + 2]});
-    for (std::size_t c = 0; c < 3; ++c) out[i + c] = static_cast<float>(p[c]);
+    for (std::size_t c = 0; c < 3; ++c) out[i + c] = p[c];
   }
 }
 
 void place_by_joints(const GltfGeometry& geometry, const std::vector<double>& positions,
-                     const std::vector<Affine>& joints, std::span<float> out) {
+                     const std::vector<Affine>& joints, std::span<double> out) {
   for (std::size_t v = 0; v < geometry.num_vertices(); ++v) {
     const GltfVec3 p{positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]};
     GltfVec3 sum{};
@@ -226,9 +226,7 @@ void place_by_joints(const GltfGeometry& geometry, const std::vector<double>& po
       for (std::size_t c = 0; c < 3; ++c) sum[c] += influence.weight * moved[c];
       total += influence.weight;
     }
-    for (std::size_t c = 0; c < 3; ++c) {
-      out[3 * v + c] = static_cast<float>(sum[c] / total);
-    }
+    for (std::size_t c = 0; c < 3; ++c) out[3 * v + c] = sum[c] / total;
   }
 }
 

@@ -55,8 +55,8 @@ void morph(std::span<const float> base, std::span<const GltfGeometry::Target> ta
 
 // Maps positions to the scene, by the map of a node or the weighted maps of joints. out: 3
 // values per vertex.
-void place(const std::vector<double>& positions, const Affine& node, std::span<float> out);
+void place(const std::vector<double>& positions, const Affine& node, std::span<double> out);
 void place_by_joints(const GltfGeometry& geometry, const std::vector<double>& positions,
-                     const std::vector<Affine>& joints, std::span<float> out);
+                     const std::vector<Affine>& joints, std::span<double> out);
 
 }  // namespace rlpc

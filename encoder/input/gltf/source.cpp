@@ -115,6 +115,20 @@ class GltfSource : public FrameSource {
         first_frame_(std::move(first_frame)) {}
 
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
+    read(frame, xyz);
+    return check_finite(path_, frame, xyz);
+  }
+  std::optional<InputError> read_exact(std::uint32_t frame, std::span<double> xyz) override {
+    read(frame, xyz);
+    return std::nullopt;
+  }
+  bool is_finer_than_floats() const override { return true; }
+
+  std::string file_of(std::uint32_t /*frame*/) const override { return path_; }
+
+ private:
+  template <class T>
+  void read(std::uint32_t frame, std::span<T> xyz) const {
     assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
     const auto next = std::upper_bound(first_frame_.begin(), first_frame_.end(), frame);
     const auto number = static_cast<std::size_t>(next - first_frame_.begin()) - 1;
@@ -128,12 +142,8 @@ class GltfSource : public FrameSource {
                                    geometry.base.size());
       posed.positions(instance, out);
     }
-    return check_finite(path_, frame, xyz);
   }
 
-  std::string file_of(std::uint32_t /*frame*/) const override { return path_; }
-
- private:
   std::string path_;
   GltfModel model_;
   GltfFrameGrid grid_;
