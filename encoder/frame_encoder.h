@@ -26,6 +26,11 @@
 // all bits outside GOFs. Thus the whole stream meets the target too. If the motion varies
 // between spans, this costs more than encode().
 //
+// A decoder verifies frames as soon as they can be decoded: spans that are held, and frames of
+// an open-ended stream with low delay, before their bytes are passed on; frames of other
+// streams with low delay when their GOF is complete. The end of the stream is passed on once
+// all frames have been verified.
+//
 // The level is written before the first GOF and cannot change. It is the lowest that allows the
 // mesh, the length of the GOFs, and twice the factors, clusters, components and unit size of
 // the first span. A later one that needs more is an error; FrameFormat::least_level avoids it.
@@ -78,7 +83,7 @@ class FrameEncoder {
 
   // Adds the next frame: [num_vertices][3], in units. Errors: a wrong number of values; a NaN,
   // or a coordinate outside the box; more than num_frames frames; a span that needs a higher
-  // level; a sink that failed. Errors are sticky.
+  // level; frames that were not verified; a sink that failed. Errors are sticky.
   std::optional<InputError> add_frame(std::span<const float> xyz);
   // Ends the stream; to be called after the last frame. Errors: fewer than num_frames frames,
   // or none; a sink that failed. The metrics are those of the whole sequence, without single

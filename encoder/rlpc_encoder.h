@@ -6,6 +6,10 @@
 //   const auto report = rlpc::encode(source, settings, sink);
 //   if (!report) return complain(report.error().message);
 //
+// encode() decodes the stream that it has made, with the decoder of this project, before any
+// byte of it is passed on. An encoding that cannot be decoded, whose error is not the one
+// reported, or that is not lossless though it should be, is an error: the sink gets nothing.
+//
 // The same input and settings give the same bytes with every compiler and on every machine. The
 // encoder holds the frames of one GOF at a time, and the analyses of all GOFs if they are small
 // enough; it reads frames from the source repeatedly. Use FrameEncoder (frame_encoder.h) for
@@ -200,6 +204,13 @@ struct EncoderSettings {
   // GOF: fewer are used where that would exceed max_memory_bytes. Clamped to 1 to
   // kMaxEncoderThreads.
   std::uint32_t threads = 1;
+  // Holds the whole stream against the rules of the specification before it is passed on, which
+  // takes as long as to decode it. Attributes, assets, metadata and clips are checked anyway.
+#ifdef NDEBUG
+  bool check_rules = false;
+#else
+  bool check_rules = true;
+#endif
 
   // Temporal layers that the stream can be cut to.
   std::uint32_t temporal_layers() const {
@@ -244,16 +255,20 @@ struct PatternCount {
 
 struct EncodeReport {
   SequenceHeader header;
-  Metrics metrics;  // of the decoded float32 positions, in input vertex order
+  // Of the decoded float32 positions, in input vertex order, against FrameSource::read_exact().
+  Metrics metrics;
   std::uint64_t bytes = 0;
   double bpvf = 0.0;  // bits per vertex per frame, everything included
   PartBits bits;
   std::uint32_t num_gofs = 0;
-  std::uint32_t clusters = 0;               // clusters or bones, over all GOFs
-  std::uint32_t components = 0;             // components or trajectories, over all GOFs
-  double step = 0.0;                        // quantiser step, units; 0 with qu and qc
-  std::uint32_t trials = 0;                 // encodings during the search for the target
-  bool target_met = true;                   // the target is not exceeded
+  std::uint32_t clusters = 0;    // clusters or bones, over all GOFs
+  std::uint32_t components = 0;  // components or trajectories, over all GOFs
+  double step = 0.0;             // quantiser step, units; 0 with qu and qc
+  std::uint32_t trials = 0;      // encodings during the search for the target
+  bool target_met = true;        // the target is not exceeded
+  // The largest distance of a vertex of the input from the 32-bit floats that were coded, in
+  // units: errors are measured from the numbers of the input, and include it.
+  double largest_rounding = 0.0;
   std::vector<PatternCount> patterns;       // of GOFs of frames, in order of appearance
   std::vector<AttributeReport> attributes;  // in the order of the stream
   std::vector<TemporalCut> temporal_cuts;   // to 1 layer and more; empty: there is only one
@@ -269,7 +284,8 @@ using Progress = std::function<void(double)>;
 
 // Encodes a whole sequence. Any thread may read from the source, one at a time. Errors: those
 // of the source; an animation that no level allows; contradictory settings, or settings of the
-// other profile; too much memory; a sink that failed.
+// other profile; too much memory; numbers that floats do not hold to the largest error of the
+// target; a stream that was not verified; a sink that failed.
 InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& settings,
                                  const ByteSink& sink, const Progress& progress = {});
 

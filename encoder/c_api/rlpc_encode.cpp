@@ -183,7 +183,9 @@ rlpc_status create(rlpc_encoder& handle, const rlpc_frame_format& format,
 }
 
 rlpc_status fail(rlpc_encoder& handle, const InputError& error) {
-  return handle.error.break_handle(handle.write_failed ? RLPC_IO_FAILED : RLPC_BAD_INPUT,
+  return handle.error.break_handle(handle.write_failed ? RLPC_IO_FAILED
+                                   : error.is_fault    ? RLPC_INTERNAL_ERROR
+                                                       : RLPC_BAD_INPUT,
                                    error.message);
 }
 
@@ -257,7 +259,7 @@ rlpc_status rlpc_encoder_add_frame(rlpc_encoder* encoder, const float* xyz, size
                                        " values, not " + std::to_string(encoder->num_values));
     }
     if (const auto error = encoder->encoder->add_frame({xyz, num_values})) {
-      if (encoder->low_delay && !encoder->write_failed) {
+      if (encoder->low_delay && !encoder->write_failed && !error->is_fault) {
         return encoder->error.set(RLPC_BAD_INPUT, error->message);  // the frame is left out
       }
       return rlpc::fail(*encoder, *error);

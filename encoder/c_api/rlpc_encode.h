@@ -16,8 +16,9 @@
 // call takes almost all of the time. Each GOF meets the target separately, and thus the whole
 // stream does (see frame_encoder.h). In the High profile, several GOFs are held and encoded
 // together (max_held_frames). The same frames and options give the same bytes on every
-// machine. No function throws or aborts. A handle may be used by one thread at a time;
-// different handles are independent.
+// machine. A decoder verifies what has been written as it goes: one that is wrong is a bug of
+// the encoder, RLPC_INTERNAL_ERROR. No function throws or aborts. A handle may be used by one
+// thread at a time; different handles are independent.
 //
 // Memory: frames and reports are in buffers of the caller, and output is passed to a callback.
 // Only the handle must be closed; it can be placed in memory of the caller (place). The

@@ -23,6 +23,7 @@ namespace rlpc {
 struct InputError {
   std::string message;
   bool is_limit = false;  // the input may be valid but exceeds a limit of the caller
+  bool is_fault = false;  // not the input but the encoder is wrong
 };
 template <class T>
 using InputResult = Result<T, InputError>;

@@ -32,6 +32,8 @@ LowDelayEncoder::LowDelayEncoder(FrameFormat format, EncoderSettings settings, B
     : format_(std::move(format)),
       settings_(std::move(settings)),
       sink_(std::move(sink)),
+      out_(settings_, format_.num_frames == 0),
+      keep_(out_.collector()),
       metrics_(format_.num_vertices, MetricsAccumulator::kTotals) {}
 
 std::optional<InputError> LowDelayEncoder::prepare() {
@@ -66,7 +68,7 @@ std::optional<InputError> LowDelayEncoder::begin_stream(std::span<const float> x
   const auto first_frame = coding_->nearest_first_frame(frame);
   if (!first_frame) return first_frame.error();
   attributes_->encode(*first_frame, *stream_);
-  if (!stream_->write_lead(header, sink_)) return InputError{"the stream could not be written"};
+  stream_->write_lead(header, keep_);
   return std::nullopt;
 }
 
@@ -120,7 +122,7 @@ std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz)
   const GofHeader header{GofKind::kFrames, num_added_, gof_->announced};
   const Bytes unit = write_unit(
       UnitType::kGof, write_frame_gof_unit(header, gof_->settings, layers.topology()));
-  if (!stream_->begin_gof(unit, sink_)) return InputError{"the stream could not be written"};
+  stream_->begin_gof(unit, keep_);
   return std::nullopt;
 }
 
@@ -167,9 +169,7 @@ std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz
   }
   gof_->before = frame->xyz;
   for (const auto& unit : units) {
-    if (!stream_->add_to_gof(write_unit(unit.type, unit.payload), sink_)) {
-      return InputError{"the stream could not be written"};
-    }
+    stream_->add_to_gof(write_unit(unit.type, unit.payload), keep_);
   }
   std::mutex reading;
   const auto decode = [&](std::uint32_t, std::span<std::int32_t> out) {
@@ -177,6 +177,9 @@ std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz
   };
   const auto measured = coding_->measure({buffer, reading}, {0, 1, 1}, decode, metrics_);
   if (!measured) return measured.error();
+  StreamVerifier& verifier =
+      out_.verifier(coding_->header(), coding_->connectivity(), num_threads_);
+  if (auto error = verifier.expect(positions, xyz)) return error;
   ++num_added_;
   ++gof_->coded;
   const double rms = metrics_.result().rms_error / std::sqrt(3.0);
@@ -185,15 +188,20 @@ std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz
   return std::nullopt;
 }
 
-bool LowDelayEncoder::end_gof() {
-  bool ok = true;
+void LowDelayEncoder::end_gof() {
   if (gof_->coded < gof_->announced) {
-    const Bytes unit = write_unit(UnitType::kFrame, write_gof_end(gof_->coded));
-    ok = stream_->add_to_gof(unit, sink_);
+    stream_->add_to_gof(write_unit(UnitType::kFrame, write_gof_end(gof_->coded)), keep_);
   }
   stream_->end_gof(gof_->coded);
   gof_.reset();
-  return ok;
+}
+
+// Frames of an open-ended stream can be decoded one by one, those of another when their GOF is
+// complete.
+std::optional<InputError> LowDelayEncoder::verify() {
+  if (gof_ && !coding_->header().open_end_flag) return std::nullopt;
+  return out_.verifier(coding_->header(), coding_->connectivity(), num_threads_)
+      .check_expected();
 }
 
 std::optional<InputError> LowDelayEncoder::add_frame(std::span<const float> xyz) {
@@ -207,21 +215,25 @@ std::optional<InputError> LowDelayEncoder::add_frame(std::span<const float> xyz)
     if (auto error = begin_gof(xyz)) return fail(*error);
   }
   if (auto error = code_frame(xyz)) return fail(*error);
-  if (gof_->coded == gof_->announced && !end_gof()) {
-    return fail({"the stream could not be written"});
+  if (num_added_ == 1) {
+    if (auto error = out_.check_contents(attributes_->has_sets())) return fail(*error);
   }
+  if (gof_->coded == gof_->announced) end_gof();
+  if (auto error = verify()) return fail(*error);
+  if (auto error = out_.pass_on(sink_)) return fail(*error);
   return std::nullopt;
 }
 
 InputResult<EncodeReport> LowDelayEncoder::finish() {
   if (failure_) return *failure_;
   if (auto error = check_count(format_, num_added_)) return fail(*error);
-  if ((gof_ && !end_gof()) || !stream_->write_end(sink_)) {
-    return fail({"the stream could not be written"});
-  }
+  if (gof_) end_gof();
+  if (auto error = verify()) return fail(*error);
+  stream_->write_end(keep_);
   EncodeReport report;
   stream_->describe(coding_->header(), coding_->connectivity(), report);
   report.metrics = metrics_.result();
+  if (auto error = out_.finish(report.metrics, sink_)) return fail(*error);
   report.attributes = attributes_->reports();
   report.step = step_ * exact_exp2(coding_->header().grid.log2_step);
   const Target& target = settings_.target;

@@ -15,6 +15,7 @@
 #include "encoder/sequence/frame_coder.h"
 #include "encoder/sequence/sequence_coding.h"
 #include "encoder/sequence/stream_assembly.h"
+#include "encoder/sequence/verified_output.h"
 
 namespace rlpc {
 
@@ -46,7 +47,8 @@ class LowDelayEncoder final : public FrameCoder {
   std::optional<InputError> divide(std::span<const float> xyz);
   std::optional<InputError> code_first(std::span<const float> xyz, const CodedMesh& layers);
   std::optional<InputError> code_frame(std::span<const float> xyz);
-  bool end_gof();
+  void end_gof();
+  std::optional<InputError> verify();
   double step_for(double rms_spread) const;
   std::uint32_t frames_of_gof() const;
   InputError fail(InputError error) {
@@ -57,6 +59,8 @@ class LowDelayEncoder final : public FrameCoder {
   FrameFormat format_;
   EncoderSettings settings_;
   ByteSink sink_;
+  VerifiedOutput out_;
+  ByteSink keep_;  // adds bytes to it
   std::uint32_t num_threads_ = 1;
   std::optional<SequenceCoding> coding_;
   std::optional<CodedMeshes> meshes_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/parallel/for_each.h"
+#include "common/verify/stream_buffer.h"
 #include "encoder/math/det_math.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/attribute_stage.h"
@@ -18,6 +19,7 @@
 #include "encoder/sequence/gof_batch.h"
 #include "encoder/sequence/sequence_coding.h"
 #include "encoder/sequence/stream_assembly.h"
+#include "encoder/sequence/stream_verifier.h"
 #include "encoder/sequence/target_loop.h"
 
 namespace rlpc {
@@ -61,6 +63,8 @@ class SequenceEncoder {
   std::optional<InputError> cut_gofs(const SequenceHeader& header);
   InputResult<TargetResult> search();
   std::optional<InputError> search_on_finer_grid(TargetResult& best);
+  std::optional<InputError> verify(const std::shared_ptr<StreamBuffer>& stream,
+                                   std::uint64_t end_of_first_gof, EncodeReport& report);
   void show_progress(std::uint32_t trial, double done) const;
   std::optional<InputError> measure_cuts(const BatchTrial& trial, EncodeReport& report);
 
@@ -75,7 +79,7 @@ class SequenceEncoder {
   std::optional<SequenceCoding> coding_;
   std::optional<StreamAssembly> stream_;
   std::optional<AttributeStage> attributes_;
-  std::uint32_t trials_ = 0;  // trials of all searches so far
+  std::uint32_t trials_ = 0;    // trials of all searches so far
 };
 
 std::optional<InputError> SequenceEncoder::prepare() {
@@ -228,19 +232,41 @@ InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSi
   }
   attributes_->encode(best.trial.gofs.front().first_positions, *stream_);
   report.attributes = attributes_->reports();
-  bool ok = stream_->write_lead(header, sink);
-  for (const CodedGof& span : best.trial.gofs) {
-    for (const GofBytes& gof : span.gofs) ok = ok && stream_->write_gof(gof, sink);
+  // Bytes leave once the whole stream has been verified.
+  const auto stream = std::make_shared<StreamBuffer>(StreamBuffer::Keep::kAll);
+  const ByteSink keep = [&](std::span<const std::uint8_t> bytes) {
+    stream->add(bytes);
+    return true;
+  };
+  std::uint64_t end_of_first_gof = 0;
+  stream_->write_lead(header, keep);
+  for (CodedGof& span : best.trial.gofs) {
+    for (GofBytes& gof : span.gofs) {
+      stream_->write_gof(std::exchange(gof, {}), keep);
+      if (end_of_first_gof == 0) end_of_first_gof = stream->size();
+    }
   }
-  ok = ok && stream_->write_end(sink);
-  if (!ok) return InputError{"the stream could not be written"};
+  stream_->write_end(keep);
   stream_->describe(header, coding_->connectivity(), report);
   if (auto error = measure_cuts(best.trial, report)) return *error;
   report.metrics = std::move(best.trial.metrics);
+  if (auto error = verify(stream, end_of_first_gof, report)) return *error;
+  if (!stream->for_each_piece(sink)) return InputError{"the stream could not be written"};
   if (settings_.baseline.qu == 0) report.step = best.step * exact_exp2(header.grid.log2_step);
   report.trials = trials_;
   report.target_met = best.met;
   return report;
+}
+
+std::optional<InputError> SequenceEncoder::verify(const std::shared_ptr<StreamBuffer>& stream,
+                                                  std::uint64_t end_of_first_gof,
+                                                  EncodeReport& report) {
+  StreamVerifier verifier(settings_, coding_->header(), coding_->connectivity().input_vertex,
+                          stream, num_threads_);
+  if (auto error = verifier.check_frames(source_, 0, source_.num_frames())) return error;
+  if (auto error = verifier.finish(report.metrics)) return error;
+  report.largest_rounding = verifier.largest_rounding();
+  return check_rules(settings_, attributes_->has_sets(), stream, end_of_first_gof);
 }
 
 // Once, for the stream that was written.
@@ -333,6 +359,10 @@ InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& set
                                  const ByteSink& sink, const Progress& progress) {
   if (auto error = check_settings(settings)) return *error;
   if (auto error = check_clips(settings.clips, source.num_frames())) return *error;
+  if (settings.target.kind == Target::kMaxError) {
+    const auto rounding = check_rounding(source, settings.target.value);
+    if (!rounding) return rounding.error();
+  }
   InputResult<EncodeReport> report = [&]() -> InputResult<EncodeReport> {
     if (settings.preset == Preset::kSlow && settings.target.has_search()) {
       return encode_slowly(source, settings, sink, progress);

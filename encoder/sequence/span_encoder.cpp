@@ -193,18 +193,29 @@ std::optional<InputError> SpanEncoder::encode_span() {
     if (!cut) return cut.error();
   }
   if (coded.model) model_ = coded.model;
-  if (!write(coded)) return InputError{"the stream could not be written"};
+  if (auto error = write(coded)) return error;
   ++coded_.spans;
   num_held_ = 0;
   buffer_.reset();
   return std::nullopt;
 }
 
-bool SpanEncoder::write(const CodedGof& span) {
-  if (coded_.spans == 0) attributes_->encode(span.first_positions, *stream_);
-  bool ok = coded_.spans > 0 || stream_->write_lead(coding_->header(), sink_);
-  for (const GofBytes& gof : span.gofs) ok = ok && stream_->write_gof(gof, sink_);
-  return ok;
+std::optional<InputError> SpanEncoder::write(const CodedGof& span) {
+  const ByteSink keep = out_.collector();
+  if (coded_.spans == 0) {
+    attributes_->encode(span.first_positions, *stream_);
+    stream_->write_lead(coding_->header(), keep);
+  }
+  bool is_first = coded_.spans == 0;
+  for (const GofBytes& gof : span.gofs) {
+    stream_->write_gof(gof, keep);
+    if (!std::exchange(is_first, false)) continue;
+    if (auto error = out_.check_contents(attributes_->has_sets())) return error;
+  }
+  StreamVerifier& verifier =
+      out_.verifier(coding_->header(), coding_->connectivity(), num_threads_);
+  if (auto error = verifier.check_frames(*buffer_, 0, buffer_->num_frames())) return error;
+  return out_.pass_on(sink_);
 }
 
 InputResult<EncodeReport> SpanEncoder::finish() {
@@ -215,10 +226,12 @@ InputResult<EncodeReport> SpanEncoder::finish() {
     buffer_.emplace(format_.num_vertices, std::move(rest));
     if (auto error = encode_span()) return fail(*error);
   }
-  if (!stream_->write_end(sink_)) return fail({"the stream could not be written"});
+  stream_->write_end(out_.collector());
   EncodeReport& report = coded_.report;
   stream_->describe(coding_->header(), coding_->connectivity(), report);
   report.metrics = coded_.metrics.result();
+  if (auto error = out_.finish(report.metrics, sink_)) return fail(*error);
+  report.target_met = report.target_met && meets_rate(settings_.target, report);
   report.attributes = attributes_->reports();
   for (std::size_t i = 0; i < coded_.cuts.size(); ++i) {
     report.temporal_cuts.push_back({static_cast<std::uint32_t>(i) + 1,

@@ -17,6 +17,7 @@
 #include "encoder/sequence/span_buffer.h"
 #include "encoder/sequence/stream_assembly.h"
 #include "encoder/sequence/target_loop.h"
+#include "encoder/sequence/verified_output.h"
 
 namespace rlpc {
 
@@ -26,6 +27,7 @@ class SpanEncoder final : public FrameCoder {
       : format_(std::move(format)),
         settings_(std::move(settings)),
         sink_(std::move(sink)),
+        out_(settings_, format_.num_frames == 0),
         coded_(format_.num_vertices) {}
 
   std::optional<InputError> prepare() override;
@@ -51,7 +53,7 @@ class SpanEncoder final : public FrameCoder {
   // The span that is being filled or encoded.
   GofSpan current() const;
   std::optional<InputError> encode_span();
-  bool write(const CodedGof& span);  // false: the sink failed
+  std::optional<InputError> write(const CodedGof& span);
   void use_header(const SequenceHeader& header);
   // The header with the grid for errors of `finest` (units) and more.
   SequenceHeader header_for(double finest) const;
@@ -67,6 +69,7 @@ class SpanEncoder final : public FrameCoder {
   FrameFormat format_;
   EncoderSettings settings_;
   ByteSink sink_;
+  VerifiedOutput out_;
   std::vector<GofSpan> spans_;
   std::optional<SequenceCoding> coding_;
   std::optional<StreamAssembly> stream_;  // from the first span on

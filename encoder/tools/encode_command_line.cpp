@@ -65,10 +65,16 @@ their frame. rlpcenc warns if the RMS error exceeds 3 % of the median edge
 length, a mean normal deviation of about one degree.
 
 --lossless restores every coordinate as the 32-bit float that it is (-0 as 0),
---lossless BITS as it is once rounded to the finest grid, of a step that is a
-power of two, on which the box needs at most BITS bits. The order of vertices
-and triangles is not kept (--keep-order keeps that of vertices), nor is
+or that is nearest to the number in INPUT: rlpcenc reports how far these are
+apart. --lossless BITS restores it once rounded to the finest grid, of a step
+that is a power of two, on which the box needs at most BITS bits. The order of
+vertices and triangles is not kept (--keep-order keeps that of vertices), nor is
 anything else in INPUT. Sampled glTF is kept as sampled.
+
+Errors are measured from the numbers in INPUT to decoded positions, which are
+32-bit floats: far from the origin, these may be too coarse for --max-error.
+rlpcenc decodes what it has written, and compares it with INPUT, before OUT gets
+its name: if they do not agree, it fails, and there is no OUT.
 
 --dry-run encodes animations of up to 1024 frames (or eight GOFs, if that is
 more) and reports the exact size. Of longer ones it encodes eight sections and
@@ -256,6 +262,9 @@ void add_more_options(CLI::App& app, EncodeCommandLine& line, const OutputOption
       app, "--hash", o.settings.hash_mode,
       {{"gof", HashMode::kGof}, {"frame", HashMode::kFrame}, {"none", HashMode::kNone}},
       "Hashes of decoded positions, one per: gof (default), frame, none")
+      ->group(kMore);
+  app.add_flag("--verify", o.settings.check_rules,
+               "Also check OUT against all rules of the specification, as rlpcval does")
       ->group(kMore);
   app.add_option("--metadata", line.metadata_path, "JSON file to carry along")
       ->check(CLI::ExistingFile)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "encoder/frame_encoder.h"
+#include "encoder/sequence/stream_verifier.h"
 
 namespace rlpc {
 namespace {
@@ -69,14 +70,25 @@ InputResult<LowDelayReport> encode_low_delay(FrameSource& source, const EncodeOp
     box.add(xyz);
   }
   use_box(options.box.value_or(box.box()), format);
-  auto encoder = FrameEncoder::create(format, options.settings, sink);
+  EncoderSettings settings = options.settings;
+  double rounding = 0.0;
+  if (settings.target.kind == Target::kMaxError) {
+    // The encoder sees floats, and keeps to what these leave of the error.
+    const auto largest = check_rounding(source, settings.target.value);
+    if (!largest) return largest.error();
+    rounding = *largest;
+    settings.target.value = std::max(settings.target.value - rounding, 1e-30);
+  }
+  auto encoder = FrameEncoder::create(format, settings, sink);
   if (!encoder) return encoder.error();
   for (std::uint32_t f = 0; f < format.num_frames; ++f) {
     if (auto error = source.read_frame(f, xyz)) return *error;
     if (auto error = encoder->add_frame(xyz)) return *error;
     progress(static_cast<double>(f + 1) / format.num_frames);
   }
-  return finish(*encoder, std::nullopt);
+  auto encoded = finish(*encoder, std::nullopt);
+  if (encoded) encoded->report.largest_rounding = rounding;
+  return encoded;
 }
 
 InputResult<LowDelayReport> encode_live(FrameStream& stream, const EncodeOptions& options,

@@ -64,6 +64,7 @@ inline nlohmann::ordered_json report_json(const EncodeReport& r) {
       {"bytes", r.bytes},
       {"bpvf", r.bpvf},
       {"metrics", metrics_json(r.metrics)},
+      {"largest_rounding", r.largest_rounding},
       {"bits",
        {{"headers", r.bits.headers},
         {"connectivity", r.bits.connectivity},

@@ -43,6 +43,9 @@ void print_lossless(const EncodeOptions& o, const EncodeReport& r) {
   std::printf("  lossless: all coordinates of all frames, %s on a grid of 2^%d units (%d bits)",
               o.settings.target.value == 0.0 ? "which are" : "once rounded to be",
               r.header.grid.log2_step, r.header.position_bits);
+  if (r.largest_rounding > 0.0) {
+    std::printf("; as 32-bit floats, up to %.3g from the numbers of INPUT", r.largest_rounding);
+  }
   std::printf("%s\n", o.settings.keep_order
                           ? "; vertices keep their order, triangles do not"
                           : "; vertices and triangles are in another order (--keep-order)");
@@ -179,6 +182,14 @@ int report_target(const EncodeOptions& o, const EncodeReport& report) {
       tell_if_far_below(o.settings.target, report);
     }
     return kEncoded;
+  }
+  if (o.settings.low_delay && o.settings.target.kind == Target::kMaxError) {
+    char error[32];
+    std::snprintf(error, sizeof error, "%.3g", report.metrics.max_error);
+    return complain("the largest error is " + std::string(error) +
+                        ", more than was asked for: the grid or 32-bit floats are too coarse. "
+                        "Try a larger --max-error, or move the animation to the origin",
+                    kTargetMissed);
   }
   if (o.settings.low_delay) {
     char error[32];

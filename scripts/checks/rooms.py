@@ -44,6 +44,10 @@ ROOMS = {
     "common/mesh_prediction": {"common", "common/components", "common/mesh", "common/kernels",
                                "common/parallel", "common/rest"},
     **dict.fromkeys(_of_kinds("common/{}/recon"), _GOFS | _RECON),
+    # What encoders verify their streams by: declared here, implemented by decoder/verify and
+    # conformance/rlpcval, joined when programs are linked, so that neither side includes the
+    # other.
+    "common/verify": {"common"},
     "common/c_api": {"common"},
     "common/testing": _GOFS,
     # Files and terminals, for programs and for readers and writers of files; floats (7.3).
@@ -67,6 +71,7 @@ ROOMS = {
                                "common/skinned_gof/recon/model_recon.h"} | _PUBLIC_DECODER,
     # Attributes and vertices as programs draw them.
     "decoder/surface": {"common", "common/attributes", "common/mesh"},
+    "decoder/verify": {"common/verify", "decoder/stream"} | _PUBLIC_DECODER,
     "decoder/c_api": {"common/c_api", "common/owned.h", "common/io/clip_time.h",
                       "common/io/float_position.h",
                       "common/mesh", "decoder/surface"} | _PUBLIC_DECODER,
@@ -111,7 +116,7 @@ ROOMS = {
     "encoder/sequence/target": _ENCODER | {"encoder/input", "encoder/metrics"},
     "encoder/sequence": _ENCODER | _of_kinds("encoder/{}") | {
         "encoder/sequence/choices", "encoder/sequence/target", "encoder/attributes",
-        "common/io", "encoder/input", "encoder/input/formats", "encoder/metrics"},
+        "common/attributes/attribute_set.h", "common/io", "common/verify", "encoder/input", "encoder/input/formats", "encoder/metrics"},
     "encoder/c_api": {"common/c_api", "encoder"},
     # Readers of mesh files know nothing of coding.
     "encoder/input": {"common", "common/attributes/attribute_set.h", "common/io", "common/mesh",

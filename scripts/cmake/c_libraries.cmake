@@ -36,7 +36,8 @@ target_link_libraries(rlpc PRIVATE rlpc_decoder rlpc_encoder)
 
 rlpc_c_library(rlpc_static rlpc STATIC ${c_of_common} ${c_of_decoder} ${c_of_encoder}
   $<TARGET_OBJECTS:rlpc_common> $<TARGET_OBJECTS:rlpc_io> $<TARGET_OBJECTS:rlpc_decoder>
-  $<TARGET_OBJECTS:rlpc_encoder>)
+  $<TARGET_OBJECTS:rlpc_encoder> $<TARGET_OBJECTS:rlpc_frame_reader>
+  $<TARGET_OBJECTS:rlpc_validator>)
 target_link_libraries(rlpc_static PRIVATE ZLIB::ZLIB Threads::Threads)
 
 # Without the writers of mesh files. Memory can come from callbacks, so containers are others, and

@@ -1,0 +1,39 @@
+// Reads a stream that is being written from its buffer.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "common/verify/stream_buffer.h"
+#include "decoder/stream/byte_source.h"
+
+namespace rlpc {
+
+class BufferSource final : public ByteSource {
+ public:
+  // most: bytes after so many are not seen.
+  explicit BufferSource(std::shared_ptr<StreamBuffer> stream,
+                        std::uint64_t most = std::numeric_limits<std::uint64_t>::max())
+      : stream_(std::move(stream)), most_(most) {}
+
+  std::uint64_t size() const override { return std::min(stream_->size(), most_); }
+  bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
+    return offset <= size() && out.size() <= size() - offset && stream_->read(offset, out);
+  }
+  // Bytes that a decoder forgets are released from now on.
+  void release_forgotten() { releases_ = true; }
+  void forget(std::uint64_t before) override {
+    if (releases_) stream_->forget(before);
+  }
+
+ private:
+  std::shared_ptr<StreamBuffer> stream_;
+  std::uint64_t most_;
+  bool releases_ = false;
+};
+
+}  // namespace rlpc
