@@ -63,6 +63,9 @@ class SequenceEncoder {
   std::optional<InputError> cut_gofs(const SequenceHeader& header);
   InputResult<TargetResult> search();
   std::optional<InputError> search_on_finer_grid(TargetResult& best);
+  double fixed_bits() const;
+  std::uint64_t total_bytes(const TargetResult& result);
+  std::optional<InputError> keep_to_rate(TargetResult& best);
   std::optional<InputError> verify(const std::shared_ptr<StreamBuffer>& stream,
                                    std::uint64_t end_of_first_gof, EncodeReport& report);
   void show_progress(std::uint32_t trial, double done) const;
@@ -80,6 +83,7 @@ class SequenceEncoder {
   std::optional<StreamAssembly> stream_;
   std::optional<AttributeStage> attributes_;
   std::uint32_t trials_ = 0;    // trials of all searches so far
+  double reserved_bits_ = 0.0;  // that earlier searches for a rate did not know of
 };
 
 std::optional<InputError> SequenceEncoder::prepare() {
@@ -191,11 +195,64 @@ InputResult<TargetResult> SequenceEncoder::search() {
   auto best = reach_target({.settings = settings_,
                             .header = header,
                             .rms_spread = extent_.rms_spread,
-                            .fixed_bits = 8.0 * static_cast<double>(stream_->overhead_bytes()),
+                            .fixed_bits = fixed_bits(),
                             .progress = progress},
                            batch);
   if (best) trials_ += best->trials;
   return best;
+}
+
+// Bits outside the GOFs that count towards a rate. The index is taken at its largest size for
+// GOFs that meet the target.
+double SequenceEncoder::fixed_bits() const {
+  constexpr double kMostBytes = 0x1p31;  // fixed: of a GOF in an index
+  double bits = 8.0 * static_cast<double>(stream_->overhead_bytes()) + reserved_bits_;
+  if (settings_.target.kind != Target::kBpvf) return bits;
+  std::vector<GofEntry> largest;
+  for (const GofSpan& span : spans_) {
+    for (const GofSpan& gof : equal_spans(span.count, span.num_gofs)) {
+      const double of_gof =
+          settings_.target.value * coding_->header().num_vertices * gof.count / 8.0;
+      largest.push_back({gof.count, static_cast<std::uint64_t>(std::min(of_gof, kMostBytes))});
+    }
+  }
+  bits += 8.0 * static_cast<double>(stream_->index_bytes(std::move(largest)));
+  return bits;
+}
+
+std::uint64_t SequenceEncoder::total_bytes(const TargetResult& result) {
+  attributes_->encode(result.trial.gofs.front().first_positions, *stream_);
+  const ByteSink discard = [](std::span<const std::uint8_t>) { return true; };
+  StreamAssembly stream = *stream_;
+  stream.write_lead(coding_->header(), discard);
+  for (const CodedGof& span : result.trial.gofs) {
+    for (const GofBytes& gof : span.gofs) stream.write_gof(gof, discard);
+  }
+  stream.write_end(discard);
+  EncodeReport report;
+  stream.describe(coding_->header(), coding_->connectivity(), report);
+  return report.bytes;
+}
+
+// A rate is that of the whole stream. What a search does not know, the size of attributes that
+// are predicted from the first frame and of skinned models in the index, is reserved after it.
+std::optional<InputError> SequenceEncoder::keep_to_rate(TargetResult& best) {
+  constexpr int kMostSearches = 3;  // fixed: what is reserved hardly changes
+  const SequenceHeader& header = coding_->header();
+  const double most = settings_.target.value * (1.0 * header.num_vertices) * header.num_frames;
+  for (int searches = 0; best.met; ++searches) {
+    const double excess = 8.0 * static_cast<double>(total_bytes(best)) - most;
+    if (excess <= 0.0) break;
+    if (searches == kMostSearches) {
+      best.met = false;
+      break;
+    }
+    reserved_bits_ += excess;
+    auto again = search();
+    if (!again) return again.error();
+    best = std::move(*again);
+  }
+  return std::nullopt;
 }
 
 // With a rate as the target, the error is known only after the search. If it would have
@@ -254,7 +311,7 @@ InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSi
   if (!stream->for_each_piece(sink)) return InputError{"the stream could not be written"};
   if (settings_.baseline.qu == 0) report.step = best.step * exact_exp2(header.grid.log2_step);
   report.trials = trials_;
-  report.target_met = best.met;
+  report.target_met = best.met && meets_rate(settings_.target, report);
   return report;
 }
 
@@ -293,6 +350,7 @@ InputResult<TargetResult> SequenceEncoder::find() {
   auto best = search();
   if (best && settings_.target.kind == Target::kBpvf) {
     if (auto error = search_on_finer_grid(*best)) return *error;
+    if (auto error = keep_to_rate(*best)) return *error;
   }
   return best;
 }
