@@ -4,12 +4,14 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "common/attributes/attribute_set.h"
 #include "common/syntax/stream_format.h"
 #include "encoder/input/axes.h"
 #include "encoder/input/formats/mesh_sequence.h"
@@ -63,6 +65,12 @@ InputResult<std::unique_ptr<FrameSource>> open_listed(
     InputResult<std::vector<std::string>> paths, const InputOptions& options) {
   if (!paths) return paths.error();
   return open_mesh_sequence(std::move(*paths), options);
+}
+
+// Of "uv12", 12; of a name without one, 0.
+std::uint32_t number_of(std::string_view name) {
+  const std::size_t digits = name.find_last_not_of("0123456789") + 1;
+  return parse_u32(name.substr(digits)).value_or(0);
 }
 
 bool is_stream(const std::string& path) {
@@ -133,6 +141,21 @@ std::optional<InputError> FrameSource::read_exact(std::uint32_t frame, std::span
   return std::nullopt;
 }
 
+void FrameSource::limit_attributes(std::size_t most) {
+  auto& sets = shape_.attributes.sets;
+  if (sets.size() <= most) return;
+  std::string names;
+  while (sets.size() > most) {
+    const auto last = std::max_element(
+        sets.rbegin(), sets.rend(),
+        [](const auto& a, const auto& b) { return number_of(a.name) < number_of(b.name); });
+    names = last->name + (names.empty() ? "" : ", ") + names;
+    sets.erase(std::prev(last.base()));
+  }
+  add_note("dropped " + names + ": a stream has at most " + std::to_string(most) +
+           " attributes");
+}
+
 bool has_clips(const InputOptions& options) {
   return options.points.empty() && is_gltf(options.path);
 }
@@ -156,6 +179,7 @@ std::optional<InputError> check_gltf_options(const InputOptions& options) {
 InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options) {
   if (auto error = check_gltf_options(options)) return *error;
   auto source = open_with_its_axes(options);
+  if (source) (*source)->limit_attributes(kMaxAttributeSets);
   if (!source || !options.axes) return source;
   return turn_source(std::move(*source), *options.axes);
 }

@@ -81,6 +81,10 @@ class FrameSource {
   const std::string& asset() const { return shape_.asset; }
   const SourceMaterials& materials() const { return shape_.materials; }
 
+  // Keeps at most so many attributes: drops those with the highest numbers in their names, the
+  // last of several, and adds a note that names them.
+  void limit_attributes(std::size_t most);
+
   // Estimated memory held by the source.
   std::uint64_t memory_bytes() const { return shape_.memory_bytes; }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/attributes/attribute_set.h"
 #include "common/skinned_gof/skinned_gof.h"
 #include "common/syntax/sequence_header.h"
 #include "encoder/frame_gof/check_frame_pattern.h"
@@ -246,6 +247,16 @@ std::optional<InputError> check_clips(std::span<const Clip> clips, std::uint32_t
     }
   }
   return std::nullopt;
+}
+
+std::optional<InputError> check_attributes(const AttributeSettings& settings,
+                                           const SourceAttributes& attributes) {
+  const auto& sets = attributes.sets;
+  if (settings.dropped || sets.size() <= kMaxAttributeSets) return std::nullopt;
+  return InputError{"a stream has at most " + std::to_string(kMaxAttributeSets) +
+                    " attributes, not " + std::to_string(sets.size()) + ": leave out `" +
+                    sets[kMaxAttributeSets].name +
+                    (sets.size() > kMaxAttributeSets + 1 ? "` and those after it" : "`")};
 }
 
 std::optional<InputError> check_settings(const EncoderSettings& s) {

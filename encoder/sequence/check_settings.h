@@ -15,5 +15,8 @@ namespace rlpc {
 std::optional<InputError> check_settings(const EncoderSettings& settings);
 // Likewise of the clips of a sequence of so many frames; kMaxFrames if that is not known.
 std::optional<InputError> check_clips(std::span<const Clip> clips, std::uint32_t num_frames);
+// Why attributes cannot be coded; none if they can, or are to be dropped.
+std::optional<InputError> check_attributes(const AttributeSettings& settings,
+                                           const SourceAttributes& attributes);
 
 }  // namespace rlpc

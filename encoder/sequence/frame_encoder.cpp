@@ -14,6 +14,7 @@ namespace {
 std::optional<InputError> check(const FrameFormat& format, const EncoderSettings& settings) {
   if (auto error = check_format(format)) return error;
   if (auto error = check_settings(settings)) return error;
+  if (auto error = check_attributes(settings.attributes, format.attributes)) return error;
   if (format.num_frames > 0) {
     if (auto error = check_clips(settings.clips, format.num_frames)) return error;
   }

@@ -417,6 +417,7 @@ InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& set
                                  const ByteSink& sink, const Progress& progress) {
   if (auto error = check_settings(settings)) return *error;
   if (auto error = check_clips(settings.clips, source.num_frames())) return *error;
+  if (auto error = check_attributes(settings.attributes, source.attributes())) return *error;
   if (settings.target.kind == Target::kMaxError) {
     const auto rounding = check_rounding(source, settings.target.value);
     if (!rounding) return rounding.error();
