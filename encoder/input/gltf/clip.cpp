@@ -127,6 +127,12 @@ class ClipReader {
 std::vector<std::uint32_t> animations_of(const GltfDocument& document, const std::string& name,
                                          GltfErrors& errors) {
   const auto count = static_cast<std::uint32_t>(document.animations.size());
+  if (name == "all" && count == 0) {
+    errors.add("animations",
+               "none there, though all are chosen; without --animation, the file "
+               "is a single frame");
+    return {};
+  }
   if (name == "all") {
     std::vector<std::uint32_t> all(count);
     std::iota(all.begin(), all.end(), 0U);

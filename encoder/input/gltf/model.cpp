@@ -1,11 +1,13 @@
 #include "encoder/input/gltf/model.h"
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 
 #include "encoder/input/gltf/asset.h"
+#include "encoder/input/gltf/losses.h"
 
 namespace rlpc {
 
@@ -32,12 +34,7 @@ class ModelReader {
     }
     const std::vector<std::uint32_t> chosen = choose_animations(document_, animations, errors_);
     if (errors_) return {};
-    if (!document_.dropped.empty()) {
-      std::string list;
-      for (const std::string& what : document_.dropped)
-        list += (list.empty() ? "" : ", ") + what;
-      model_.notes.push_back("dropped: " + list);
-    }
+    model_.dropped = document_.dropped;
     if (animations.empty() && document_.animations.size() > 1) {
       model_.notes.push_back("reading the first of " + to_string(document_.animations.size()) +
                              " animations (" + gltf_animation_names(document_) +
@@ -45,12 +42,12 @@ class ModelReader {
     }
     for (const std::uint32_t number : chosen) {
       model_.clips.push_back(read_gltf_clip(document_, number, values_, errors_));
-      note(document_.animations[number].num_unknown, "extension channel");
+      drop_channels(document_.animations[number].pointers);
     }
     read_skins();
     if (errors_) return {};
     for (const std::uint32_t node : model_.scene.with_mesh) add_mesh(node);
-    if (model_.instances.empty()) errors_.add("scenes", "expected a mesh with triangles there");
+    if (model_.instances.empty()) errors_.add("scenes", what_is_missing());
     note(num_without_triangles_, "point or line primitive");
     for (GltfMesh& mesh : document_.meshes) model_.weights.push_back(std::move(mesh.weights));
     model_.nodes = std::move(document_.nodes);
@@ -60,6 +57,31 @@ class ModelReader {
   }
 
  private:
+  std::string what_is_missing() const {
+    if (!document_.meshes.empty()) return "expected a mesh with triangles there";
+    return document_.animations.empty()
+               ? "the file has no mesh; expected one with triangles"
+               : "the file has animations alone, and no mesh for them to move; export both in "
+                 "one file";
+  }
+
+  void drop_channels(const std::vector<std::string>& pointers) {
+    std::size_t without_target = 0;
+    for (const std::string& pointer : pointers) {
+      const std::string target = pointer_target(pointer);
+      const std::string what = "animation of " + target;
+      if (target.empty()) {
+        ++without_target;
+      } else if (std::find(model_.dropped.begin(), model_.dropped.end(), what) ==
+                 model_.dropped.end()) {
+        model_.dropped.push_back(what);
+      }
+    }
+    if (without_target == 0) return;
+    model_.dropped.push_back("channels of animations without target (" +
+                             to_string(without_target) + ")");
+  }
+
   void note(std::uint64_t count, const std::string& what) {
     if (count == 0) return;
     model_.notes.push_back("dropped " + to_string(count) + " " + what +
@@ -185,6 +207,14 @@ InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLi
   GltfModel model =
       ModelReader(std::move(document), *file, limits, memory, errors).read(options.animations);
   if (errors) return errors.first();
+  for (std::string& loss : gltf_losses(*file->json, model)) {
+    model.dropped.push_back(std::move(loss));
+  }
+  if (!model.dropped.empty()) {
+    std::string list;
+    for (const std::string& what : model.dropped) list += (list.empty() ? "" : ", ") + what;
+    model.notes.insert(model.notes.begin(), "dropped: " + list);
+  }
   GltfAsset asset = make_gltf_asset(*file->json, model, *file, options.textures, memory);
   if (errors) return errors.first();
   model.asset = std::move(asset.glb);

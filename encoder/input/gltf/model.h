@@ -51,6 +51,7 @@ struct GltfModel {
   std::size_t num_materials = 0;
   std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate, "N/D", as rlpcdec writes it
   std::vector<std::string> notes;       // see FrameSource
+  std::vector<std::string> dropped;     // contents that are not read: "cameras"
   std::vector<std::string> files;       // likewise
   std::string asset;                    // likewise
   std::uint64_t memory_bytes = 0;  // of the model and of the source made from it, estimated

@@ -48,18 +48,15 @@ std::vector<std::string> dropped(const GltfValue& root) {
   std::vector<std::string> found;
   const GltfValue meshes = root["meshes"];
   bool has_tangents = false;
-  bool has_custom = false;
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const GltfValue primitives = meshes[m]["primitives"];
     for (std::size_t p = 0; p < primitives.size(); ++p) {
       const GltfValue attributes = primitives[p]["attributes"];
       has_tangents |= attributes["TANGENT"].exists();
-      for (const std::string& name : attributes.names()) has_custom |= name.starts_with('_');
     }
   }
   // Viewers compute them from normals and texture coordinates; those of one pose are of no use.
   if (has_tangents) found.emplace_back("tangents");
-  if (has_custom) found.emplace_back("custom attributes");
   const std::pair<const char*, const char*> arrays[] = {{"skins", "skeleton (not its motion)"},
                                                         {"cameras", "cameras"}};
   for (const auto& [name, what] : arrays) {
@@ -227,7 +224,8 @@ GltfAnimation read_animation(const GltfValue& value, const Counts& counts) {
     const GltfValue target = channels[i]["target"];
     const std::string path = target["path"].text();
     if (!target["node"].exists() || path == "pointer") {  // for extensions
-      ++animation.num_unknown;
+      const GltfValue extension = target["extensions"]["KHR_animation_pointer"];
+      animation.pointers.push_back(extension["pointer"].text(""));
       continue;
     }
     const auto found = kPaths.find(path);

@@ -87,7 +87,9 @@ struct GltfAnimation {
   std::string name;
   std::vector<Sampler> samplers;
   std::vector<Channel> channels;
-  std::uint32_t num_unknown = 0;  // channels whose target is not a node
+  // Channels whose target is not a node: of each, the JSON pointer of KHR_animation_pointer, or
+  // empty.
+  std::vector<std::string> pointers;
 };
 
 struct GltfDocument {
