@@ -61,10 +61,10 @@ std::optional<FrameRate> parse_fraction(std::string_view text) {
   return FrameRate{*numerator / divisor, *denominator / divisor};
 }
 
-InputResult<std::unique_ptr<FrameSource>> open_listed(
-    InputResult<std::vector<std::string>> paths, const InputOptions& options) {
-  if (!paths) return paths.error();
-  return open_mesh_sequence(std::move(*paths), options);
+InputResult<std::unique_ptr<FrameSource>> open_listed(InputResult<FrameFiles> files,
+                                                      const InputOptions& options) {
+  if (!files) return files.error();
+  return open_mesh_sequence(std::move(*files), options);
 }
 
 // Of "uv12", 12; of a name without one, 0.
@@ -87,6 +87,11 @@ InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options,
         ": is already an RLPC stream; rlpcdec decodes it, rlpcinfo --extract makes "
         "it smaller"};
   }
+  if (format == nullptr && exists && path != "-") {
+    // Perhaps it cannot be read, or only stands for the file.
+    const auto file = InputFile::open(path, options.max_memory_bytes);
+    if (!file) return file.error();
+  }
   if (format == nullptr) {
     return InputError{name_of_input(path) +
                       (exists ? ": unknown kind of file" : ": no such file or folder") +
@@ -102,13 +107,18 @@ InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options,
                         ": a point cache has no triangles; give its mesh as the input and the "
                         "cache with --points"};
     default:
-      return open_mesh_sequence({path}, options);
+      return open_mesh_sequence({{path}}, options);
   }
 }
 
 InputResult<std::unique_ptr<FrameSource>> open_with_its_axes(const InputOptions& options) {
   const std::string& path = options.path;
   std::error_code ec;
+  if (!options.more_paths.empty()) {
+    std::vector<std::string> paths{path};
+    paths.insert(paths.end(), options.more_paths.begin(), options.more_paths.end());
+    return open_listed(list_mesh_files(paths), options);
+  }
   const bool exists = path == "-" || fs::exists(path, ec);
   if (!options.points.empty()) {
     const InputFormat* const format = format_of(options.points);
@@ -157,7 +167,7 @@ void FrameSource::limit_attributes(std::size_t most) {
 }
 
 bool has_clips(const InputOptions& options) {
-  return options.points.empty() && is_gltf(options.path);
+  return options.more_paths.empty() && options.points.empty() && is_gltf(options.path);
 }
 
 std::optional<InputError> check_gltf_options(const InputOptions& options) {
@@ -177,6 +187,11 @@ std::optional<InputError> check_gltf_options(const InputOptions& options) {
 }
 
 InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options) {
+  if (!options.more_paths.empty() && !options.points.empty()) {
+    return InputError{
+        name_of_input(options.points) +
+        ": a point cache has the frames of one mesh; give one INPUT with --points"};
+  }
   if (auto error = check_gltf_options(options)) return *error;
   auto source = open_with_its_axes(options);
   if (source) (*source)->limit_attributes(kMaxAttributeSets);

@@ -116,13 +116,17 @@ inline constexpr std::uint64_t kUsualEncoderBytes = std::uint64_t{1} << 35;
 //   mesh.obj                    one frame
 //   mesh.obj            x.pc2   triangles from the mesh, positions from the point cache;
 //                               also x.mdd
-//   folder                      every .obj file in it, "2" before "10"
-//   walk_*.obj                  the files that match (* ? [ ] in the file name), sorted
-//   likewise walk_%04d.obj               from the lowest number that exists, without gaps
+//   folder                      every .obj file in it
+//   walk_*.obj                  the files that match (* ? [ ] in the file name)
+//   walk_%04d.obj               the files with such a number, without gaps
+//   walk_%g.obj                 the files with a number, also 1.25, -5 or 007
+//   a.obj b.obj ...             these files: path, then more_paths
 //   mesh.ply, mesh.off          as .obj, everywhere above; one format in a folder
 //   x.rlpd                      decoder output (Annex A)
 //   x.glb, x.gltf               the scene of a glTF 2.0 document, moved by its animations
 //   -                           standard input: any of these files
+// Frames are sorted by the number in which their names differ; see formats/frame_names.h.
+//
 // Without a known extension, the format is detected from the contents.
 //
 // Frame rate: `frame_rate` if given; otherwise that of the .rlpd header, or of a comment "#
@@ -142,6 +146,7 @@ struct InputOptions {
   std::optional<Axes> axes{};  // to turn positions to
   // Input estimated to need more is an error. Files may claim far more than they contain.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;
+  std::vector<std::string> more_paths{};  // further files of a sequence
 };
 
 // Opens the input and checks it as far as possible without reading every frame; read_frame()

@@ -22,6 +22,7 @@ class FrameStream {
     FrameRate frame_rate;
     std::vector<Triangle> triangles;  // every index below num_vertices; may be empty
     SourceAttributes attributes{};
+    std::vector<std::string> notes{};  // as FrameSource::notes()
   };
 
   explicit FrameStream(Shape shape) : shape_(std::move(shape)) {}

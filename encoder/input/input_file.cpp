@@ -1,6 +1,7 @@
 #include "encoder/input/input_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cerrno>
 #include <cmath>
@@ -21,6 +22,10 @@ PipedInput& standard_input() {
   return input;
 }
 
+// How the texts begin that Git keeps in place of large files.
+constexpr std::string_view kLfsPointer = "version https://git-lfs";
+constexpr std::uint64_t kMaxLfsPointerBytes = 1024;
+
 std::span<std::uint8_t> as_bytes(std::span<char> text) {
   return {reinterpret_cast<std::uint8_t*>(text.data()), text.size()};
 }
@@ -34,6 +39,19 @@ std::string memory_problem(std::uint64_t max_memory_bytes) {
 
 InputResult<InputFile> InputFile::open(const std::string& path,
                                        std::uint64_t max_memory_bytes) {
+  auto file = open_any(path, max_memory_bytes);
+  if (!file) return file;
+  std::array<char, kLfsPointer.size()> beginning{};
+  if (file->size() < beginning.size() || file->size() > kMaxLfsPointerBytes) return file;
+  if (auto error = file->read(0, beginning)) return *error;
+  if (std::string_view(beginning.data(), beginning.size()) != kLfsPointer) return file;
+  return InputError{file->path() +
+                    ": is a Git LFS pointer, a text in place of the file; `git lfs pull` "
+                    "fetches the file itself"};
+}
+
+InputResult<InputFile> InputFile::open_any(const std::string& path,
+                                           std::uint64_t max_memory_bytes) {
   InputFile file;
   file.path_ = name_of_input(path);
   if (path == "-") {

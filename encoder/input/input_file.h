@@ -18,7 +18,7 @@ namespace rlpc {
 class InputFile {
  public:
   // Standard input is read completely when first opened, up to max_memory_bytes, and may be
-  // opened again.
+  // opened again. Errors: a file that cannot be read, or a Git LFS pointer in its place.
   static InputResult<InputFile> open(const std::string& path,
                                      std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
@@ -30,6 +30,9 @@ class InputFile {
   std::optional<InputError> read(std::uint64_t offset, std::span<char> bytes);
 
  private:
+  static InputResult<InputFile> open_any(const std::string& path,
+                                         std::uint64_t max_memory_bytes);
+
   std::string path_;
   std::uint64_t size_ = 0;
   std::unique_ptr<std::ifstream> stream_;  // none: standard input

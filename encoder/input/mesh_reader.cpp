@@ -20,7 +20,7 @@ bool is_mesh_extension(const std::string& path) {
 }
 
 InputResult<SingleMesh> read_mesh(const std::string& path, std::uint64_t max_memory_bytes,
-                                  bool with_attributes) {
+                                  bool with_attributes, bool cuts_polygons) {
   const std::string name = name_of_input(path);
   const InputFormat* const format = format_of(path);
   const bool known = format != nullptr && format->parse != nullptr;
@@ -32,8 +32,9 @@ InputResult<SingleMesh> read_mesh(const std::string& path, std::uint64_t max_mem
   const auto text = read_whole_file(path, max_memory_bytes);
   if (!text) return text.error();
   if (!known) return unknown;
-  return format->parse(*text, name,
-                       {max_memory_bytes, max_memory_bytes - text->size(), with_attributes});
+  return format->parse(
+      *text, name,
+      {max_memory_bytes, max_memory_bytes - text->size(), with_attributes, cuts_polygons});
 }
 
 FrameSource::Shape shape_of(SingleMesh mesh, std::uint32_t num_frames,

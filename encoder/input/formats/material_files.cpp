@@ -34,19 +34,66 @@ bool is_kept_texture(std::string_view mtl, std::string_view name) {
   return false;
 }
 
-// "mtllib a.mtl b.mtl", or one name with blanks.
-std::vector<std::string> library_names(const std::string& words, const fs::path& folder) {
-  std::error_code unknown;
-  if (fs::is_regular_file(folder / words, unknown)) return {words};
+// Lines as in "mtllib a.mtl b.mtl", or of one name with blanks.
+std::vector<std::string> library_names(const std::string& lines, const fs::path& folder) {
   std::vector<std::string> names;
-  TextWords text(words);
-  for (std::string_view name = text.next(); !name.empty(); name = text.next()) {
-    names.emplace_back(name);
+  for (TextWords text(lines); !text.at_end(); text.next_line()) {
+    TextWords whole = text;
+    const std::string words = whole.rest_of_words();
+    std::error_code unknown;
+    if (fs::is_regular_file(folder / words, unknown)) {
+      names.push_back(words);
+      continue;
+    }
+    for (std::string_view name = text.next(); !name.empty(); name = text.next()) {
+      names.emplace_back(name);
+    }
   }
   return names;
 }
 
-void read_libraries(const std::string& path, std::uint64_t max_memory_bytes, SingleMesh& mesh) {
+// Images of other uses than the asset has.
+void note_what_is_dropped(SingleMesh& mesh) {
+  std::string dropped;
+  std::size_t count = 0;
+  for (const std::string& texture : mesh.materials.textures) {
+    if (is_kept_texture(mesh.materials.mtl, texture)) continue;
+    dropped += (dropped.empty() ? "" : ", ") + printable(texture);
+    ++count;
+  }
+  if (count == 0) return;
+  mesh.notes.push_back("dropped: " + std::to_string(count) +
+                       (count == 1 ? " texture (" : " textures (") + dropped +
+                       "); only those of map_Kd, map_Ke and norm are kept");
+}
+
+// A name alone tells nothing apart, and is not worth an asset.
+void note_only_names(SingleMesh& mesh) {
+  if (!mesh.asset.empty()) return;
+  std::string names;
+  for (const auto* const list : {&mesh.materials.part_names, &mesh.materials.names}) {
+    for (const std::string& name : *list) {
+      names += (names.empty() ? "" : " and ") + rlpc::quoted(name);
+    }
+  }
+  if (!names.empty()) mesh.notes.push_back("does not keep " + names + ", its only name");
+}
+
+void make_asset(const std::string& path, bool textures, std::uint64_t max_memory_bytes,
+                SingleMesh& mesh) {
+  const std::uint64_t held = mesh.memory_bytes() + mesh.materials.mtl.size();
+  // Images are held up to three times while the asset is made.
+  const std::uint64_t left = (max_memory_bytes - std::min(held, max_memory_bytes)) / 3;
+  MaterialAsset made = make_material_asset(mesh.materials, folder_of(path), textures, left);
+  mesh.asset = std::move(made.glb);
+  for (std::string& file : made.files) mesh.material_files.push_back(std::move(file));
+  for (std::string& note : made.notes) mesh.notes.push_back(std::move(note));
+}
+
+}  // namespace
+
+void read_material_text(const std::string& path, std::uint64_t max_memory_bytes,
+                        SingleMesh& mesh) {
   if (mesh.material_library.empty() || path == "-") return;
   const fs::path folder = folder_of(path);
   for (const std::string& name : library_names(mesh.material_library, folder)) {
@@ -70,34 +117,6 @@ void read_libraries(const std::string& path, std::uint64_t max_memory_bytes, Sin
     mesh.materials.textures.push_back(std::move(texture));
   }
 }
-
-// Images of other uses than the asset has.
-void note_what_is_dropped(SingleMesh& mesh) {
-  std::string dropped;
-  std::size_t count = 0;
-  for (const std::string& texture : mesh.materials.textures) {
-    if (is_kept_texture(mesh.materials.mtl, texture)) continue;
-    dropped += (dropped.empty() ? "" : ", ") + printable(texture);
-    ++count;
-  }
-  if (count == 0) return;
-  mesh.notes.push_back("dropped: " + std::to_string(count) +
-                       (count == 1 ? " texture (" : " textures (") + dropped +
-                       "); only those of map_Kd, map_Ke and norm are kept");
-}
-
-void make_asset(const std::string& path, bool textures, std::uint64_t max_memory_bytes,
-                SingleMesh& mesh) {
-  const std::uint64_t held = mesh.memory_bytes() + mesh.materials.mtl.size();
-  // Images are held up to three times while the asset is made.
-  const std::uint64_t left = (max_memory_bytes - std::min(held, max_memory_bytes)) / 3;
-  MaterialAsset made = make_material_asset(mesh.materials, folder_of(path), textures, left);
-  mesh.asset = std::move(made.glb);
-  for (std::string& file : made.files) mesh.material_files.push_back(std::move(file));
-  for (std::string& note : made.notes) mesh.notes.push_back(std::move(note));
-}
-
-}  // namespace
 
 std::vector<std::string> textures_of(std::string_view mtl) {
   std::vector<std::string> textures;
@@ -129,9 +148,10 @@ InputResult<SingleMesh> read_mesh_and_materials(const std::string& path, bool te
                                                 std::uint64_t max_memory_bytes) {
   auto mesh = read_mesh(path, max_memory_bytes);
   if (!mesh) return mesh;
-  read_libraries(path, max_memory_bytes, *mesh);
+  read_material_text(path, max_memory_bytes, *mesh);
   make_asset(path, textures, max_memory_bytes, *mesh);
   if (textures) note_what_is_dropped(*mesh);
+  note_only_names(*mesh);
   return mesh;
 }
 

@@ -17,6 +17,11 @@ namespace rlpc {
 InputResult<SingleMesh> read_mesh_and_materials(const std::string& path, bool textures,
                                                 std::uint64_t max_memory_bytes);
 
+// Reads the .mtl files that a mesh names into its materials, and adds notes about those that
+// cannot be read.
+void read_material_text(const std::string& path, std::uint64_t max_memory_bytes,
+                        SingleMesh& mesh);
+
 // Whether a name leads to a place in or below the folder, also where it is a link.
 bool stays_below(const std::filesystem::path& folder, const std::filesystem::path& name);
 

@@ -4,16 +4,18 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <span>
 #include <system_error>
 #include <utility>
+#include <variant>
 
-#include "common/io/numbered_name.h"
+#include "encoder/input/formats/face_match.h"
 #include "encoder/input/formats/material_files.h"
+#include "encoder/input/input_file.h"
 #include "encoder/input/input_format.h"
 #include "encoder/input/mesh_reader.h"
 
@@ -22,16 +24,6 @@ namespace rlpc {
 namespace fs = std::filesystem;
 
 namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-// The run of digits that starts at `pos`, without its leading zeros; moves `pos` past it.
-std::string_view take_number(std::string_view text, std::size_t& pos) {
-  while (pos < text.size() && text[pos] == '0') ++pos;
-  const std::size_t first = pos;
-  while (pos < text.size() && is_digit(text[pos])) ++pos;
-  return text.substr(first, pos - first);
-}
 
 // Names of the files in a folder.
 InputResult<std::vector<std::string>> list_names(const fs::path& folder) {
@@ -44,10 +36,12 @@ InputResult<std::vector<std::string>> list_names(const fs::path& folder) {
     it.increment(ec);
   }
   if (ec) return InputError{folder.string() + ": cannot list the folder: " + ec.message()};
+  // For the first of several problems: systems list files in any order.
   std::sort(names.begin(), names.end(), natural_less);
   return names;
 }
 
+// The names that match, in the folder.
 template <class Predicate>
 InputResult<std::vector<std::string>> list_matching(const fs::path& folder, Predicate matches,
                                                     const std::string& if_none) {
@@ -59,47 +53,6 @@ InputResult<std::vector<std::string>> list_matching(const fs::path& folder, Pred
   }
   if (paths.empty()) return InputError{if_none};
   return paths;
-}
-
-// A file name, split at its last number.
-struct NameParts {
-  std::string_view before;
-  std::optional<std::uint64_t> number;
-  std::string_view after;
-};
-
-NameParts parts_of(std::string_view path) {
-  const std::string_view name = path.substr(path.find_last_of('/') + 1);
-  std::size_t end = name.size();
-  while (end > 0 && !is_digit(name[end - 1])) --end;
-  std::size_t first = end;
-  while (first > 0 && is_digit(name[first - 1])) --first;
-  std::uint64_t number = 0;
-  const auto [rest, error] = std::from_chars(name.data() + first, name.data() + end, number);
-  if (error != std::errc()) return {name, std::nullopt, ""};
-  return {name.substr(0, first), number, name.substr(end)};
-}
-
-// Warnings about suspicious sequences.
-std::vector<std::string> notes_on(const std::vector<std::string>& paths) {
-  std::size_t gaps = 0;
-  std::string first_gap;
-  for (std::size_t i = 1; i < paths.size(); ++i) {
-    const NameParts a = parts_of(paths[i - 1]);
-    const NameParts b = parts_of(paths[i]);
-    if (a.before != b.before || a.after != b.after || !a.number || !b.number) {
-      return {paths[i - 1] + " and " + paths[i] + " are frames " + std::to_string(i - 1) +
-              " and " + std::to_string(i) + ", though their names have different forms"};
-    }
-    if (*b.number == *a.number + 1) continue;
-    if (gaps++ == 0) first_gap = paths[i - 1] + " and " + paths[i];
-  }
-  if (gaps == 0) return {};
-  if (gaps == 1) {
-    return {"there is no frame between " + first_gap + "; the gap is closed"};
-  }
-  return {"the numbers of the frames have " + std::to_string(gaps) +
-          " gaps, the first between " + first_gap + "; the gaps are closed"};
 }
 
 const SourceAttribute* find_attribute(const SourceAttributes& attributes,
@@ -131,10 +84,53 @@ bool are_near(const SourceAttribute& a, const SourceAttribute& b,
   return true;
 }
 
+// The sets of a mesh in the corners of another: corner_of[c] is the one that was c.
+void move_corners(const std::vector<std::uint32_t>& corner_of, SourceAttributes& attributes) {
+  for (SourceAttribute& set : attributes.sets) {
+    if (set.domain == AttributeDomain::kTriangle) {
+      const std::vector<float> before = set.values;
+      const std::size_t n = set.num_components;
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        set.values[i] = before[n * (corner_of[3 * (i / n)] / 3) + i % n];
+      }
+    } else if (!set.value_of_corner.empty()) {
+      const std::vector<std::uint32_t> before = set.value_of_corner;
+      for (std::size_t c = 0; c < before.size(); ++c) {
+        set.value_of_corner[c] = before[corner_of[c]];
+      }
+    }
+  }
+}
+
+// Gives the numbers of a set of triangles, which stand for `names`, those that `others` give
+// these names. Numbers without a name are those of nothing.
+void renumber(const std::vector<std::string>& names, const std::vector<std::string>& others,
+              SourceAttribute& set) {
+  std::vector<float> number_of;
+  for (const std::string& name : names) {
+    const auto found = std::find(others.begin(), others.end(), name);
+    const bool is_known = found != others.end();
+    number_of.push_back(is_known ? static_cast<float>(found - others.begin()) : -1.0F);
+  }
+  for (float& value : set.values) {
+    const auto number = static_cast<std::size_t>(value);
+    value = number < names.size() ? number_of[number] : static_cast<float>(others.size());
+  }
+}
+
+// What the first file of a sequence says of its faces and surface.
+struct FirstMesh {
+  std::vector<MeshPolygon> polygons;
+  PolygonCuts cuts;
+  std::string material_library;
+};
+
 class MeshSequence : public FrameSource {
  public:
-  MeshSequence(Shape shape, std::vector<std::string> paths, std::uint64_t max_memory_bytes)
+  MeshSequence(Shape shape, FirstMesh first, std::vector<std::string> paths,
+               std::uint64_t max_memory_bytes)
       : FrameSource(std::move(shape)),
+        first_(std::move(first)),
         paths_(std::move(paths)),
         max_memory_bytes_(max_memory_bytes),
         has_compared_attributes_(paths_.size(), false) {
@@ -163,93 +159,172 @@ class MeshSequence : public FrameSource {
 
  private:
   InputResult<SingleMesh> read_file_of(std::uint32_t frame) {
-    auto mesh = read_mesh(paths_[frame], max_memory_bytes_, !has_compared_attributes_[frame]);
+    auto mesh =
+        read_mesh(paths_[frame], max_memory_bytes_, !has_compared_attributes_[frame], false);
     if (!mesh) return mesh;
-    if (auto error = compare_with_first(frame, *mesh)) return *error;
-    if (!has_compared_attributes_[frame]) compare_attributes(frame, mesh->attributes);
+    if (auto error = fit_to_first(frame, *mesh)) return *error;
+    if (!has_compared_attributes_[frame]) compare_attributes(frame, *mesh);
     return mesh;
   }
 
-  std::optional<InputError> compare_with_first(std::uint32_t frame,
-                                               const SingleMesh& mesh) const {
-    const auto differs = [&](const std::string& here, const std::string& there) {
-      return InputError{paths_[frame] + ": frame " + std::to_string(frame) + " (from 0) has " +
-                        here + ", but " + paths_[0] + " has " + there +
-                        "; every frame must have the vertices and faces of the first"};
-    };
-    if (mesh.xyz.size() / 3 != num_vertices()) {
-      return differs(std::to_string(mesh.xyz.size() / 3) + " vertices",
-                     std::to_string(num_vertices()));
-    }
-    if (mesh.triangles.size() != triangles().size()) {
-      return differs(std::to_string(mesh.triangles.size()) + " triangles",
-                     std::to_string(triangles().size()));
-    }
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (mesh.triangles[t] == triangles()[t]) continue;
-      return differs("triangle " + std::to_string(t) + " = " + corners(mesh.triangles[t]),
-                     corners(triangles()[t]));
-    }
-    return std::nullopt;
+  InputError differs(std::uint32_t frame, const std::string& how) const {
+    return {paths_[frame] + ": frame " + std::to_string(frame) + " (from 0) has " + how +
+            "; every frame must have the vertices and faces of the first"};
   }
 
-  // Adds a note about the first file whose attributes are not those of the first one.
-  void compare_attributes(std::uint32_t frame, const SourceAttributes& found) {
+  // Gives the mesh of a frame, whose polygons are fans, the triangles of the first, in their
+  // order.
+  std::optional<InputError> fit_to_first(std::uint32_t frame, SingleMesh& mesh) const {
+    const auto counts_differ = [&](std::size_t here, std::size_t there, const char* what) {
+      return differs(frame, std::to_string(here) + " " + what + ", but " + paths_[0] + " has " +
+                                std::to_string(there));
+    };
+    if (mesh.xyz.size() / 3 != num_vertices()) {
+      return counts_differ(mesh.xyz.size() / 3, num_vertices(), "vertices");
+    }
+    if (mesh.triangles.size() != triangles().size()) {
+      return counts_differ(mesh.triangles.size(), triangles().size(), "triangles");
+    }
+    if (has_triangles_of_first(mesh.triangles)) {
+      for (SourceAttribute& set : mesh.attributes.sets) first_.cuts.apply(set.value_of_corner);
+      return std::nullopt;
+    }
+    if (2 * kMatchBytes * triangles().size() > max_memory_bytes_) {
+      return InputError{paths_[frame] + ": has faces in another order than " + paths_[0] +
+                        ", and " + memory_problem(max_memory_bytes_)};
+    }
+    return match_with_first(frame, mesh);
+  }
+
+  bool has_triangles_of_first(const std::vector<Triangle>& fans) const {
+    if (first_.cuts.empty()) return fans == triangles();
+    std::vector<Triangle> cut = fans;
+    first_.cuts.apply(cut);
+    return cut == triangles();
+  }
+
+  std::optional<InputError> match_with_first(std::uint32_t frame, SingleMesh& mesh) const {
+    std::vector<Triangle> fans = triangles();
+    first_.cuts.undo(fans);
+    auto matched = match_faces({fans, first_.polygons}, {mesh.triangles, mesh.polygons});
+    if (auto* const corner_of = std::get_if<std::vector<std::uint32_t>>(&matched)) {
+      first_.cuts.apply(*corner_of);
+      move_corners(*corner_of, mesh.attributes);
+      return std::nullopt;
+    }
+    // Perhaps one of them has been split into triangles.
+    const auto split = match_faces({triangles(), {}}, {mesh.triangles, {}});
+    if (const auto* const corner_of = std::get_if<std::vector<std::uint32_t>>(&split)) {
+      move_corners(*corner_of, mesh.attributes);
+      return std::nullopt;
+    }
+    const OddFace& odd = std::get<OddFace>(matched);
+    return differs(frame, odd.is_of_first ? "no face " + corners(odd.vertices) + ", but " +
+                                                paths_[0] + " has it"
+                                          : "the face " + corners(odd.vertices) + ", but " +
+                                                paths_[0] + " has no such face");
+  }
+
+  // Notes what the first file has not, or has otherwise; each set once.
+  void compare_attributes(std::uint32_t frame, SingleMesh& mesh) {
     has_compared_attributes_[frame] = true;
-    for (const SourceAttribute& set : found.sets) {
+    for (SourceAttribute& set : mesh.attributes.sets) {
       if (set.name == "normal") continue;  // moves with the frames
+      if (set.name == "material" && !mesh.materials.names.empty()) {
+        renumber(mesh.materials.names, materials().names, set);
+      } else if (set.name == "part" && !mesh.materials.part_names.empty()) {
+        renumber(mesh.materials.part_names, materials().part_names, set);
+      }
       const SourceAttribute* const first = find_attribute(attributes(), set.name);
       if (first != nullptr && are_near(*first, set, triangles())) continue;
-      add_note(paths_[frame] + ": " + set.name +
-               (first == nullptr
+      note_once(frame, set.name,
+                first == nullptr
                     ? " is dropped, as " + paths_[0] + " has none"
-                    : " differs from that of " + paths_[0] + ", which is kept for all frames"));
-      has_compared_attributes_.assign(paths_.size(), true);
-      return;
+                    : " differs from that of " + paths_[0] + ", which is kept for all frames");
     }
+    compare_materials(frame, mesh);
+    for (const std::string& note : mesh.notes) compare_note(frame, note);
+  }
+
+  void compare_materials(std::uint32_t frame, SingleMesh& mesh) {
+    const auto is_other = [&](std::vector<std::string> SourceMaterials::*what) {
+      const std::vector<std::string>& known = materials().*what;
+      const auto is_new = [&](const std::string& name) {
+        return std::find(known.begin(), known.end(), name) == known.end();
+      };
+      const auto& found = mesh.materials.*what;
+      return std::any_of(found.begin(), found.end(), is_new);
+    };
+    if (is_other(&SourceMaterials::names)) note_others(frame, "names of materials");
+    if (is_other(&SourceMaterials::part_names)) note_others(frame, "names of parts");
+    if (!mesh.material_library.empty() && mesh.material_library != first_.material_library) {
+      mesh.materials.textures.clear();
+      read_material_text(paths_[frame], max_memory_bytes_, mesh);
+      if (mesh.materials.mtl != materials().mtl) note_others(frame, "materials (.mtl)");
+    }
+    if (is_other(&SourceMaterials::textures)) note_others(frame, "textures");
+  }
+
+  // Passes on what is dropped from this file, and from no other before.
+  void compare_note(std::uint32_t frame, const std::string& note) {
+    // The same with another number, or other names, is nothing new.
+    const std::string kind = note.substr(0, note.find_first_of("(0123456789"));
+    const auto is_known = [&](const std::string& known) { return known.starts_with(kind); };
+    if (std::any_of(notes().begin(), notes().end(), is_known)) return;
+    if (noted_.insert(kind).second) add_note(paths_[frame] + ": " + note);
+  }
+
+  void note_others(std::uint32_t frame, const std::string& what) {
+    note_once(frame, what, " are dropped; those of " + paths_[0] + " are kept for all frames");
+  }
+
+  void note_once(std::uint32_t frame, const std::string& what, const std::string& fate) {
+    if (!noted_.insert(what).second) return;
+    add_note(paths_[frame] + ": " + what + fate);
   }
 
   // Counted from 1, as in OBJ files.
-  static std::string corners(const Triangle& t) {
-    std::string text;
-    for (const std::uint32_t v : t) text += " " + std::to_string(std::uint64_t{v} + 1);
-    return "f" + text;
+  static std::string corners(const std::vector<std::uint32_t>& vertices) {
+    constexpr std::size_t kMost = 8;
+    std::string text = "f";
+    for (std::size_t k = 0; k < std::min(kMost, vertices.size()); ++k) {
+      text += " " + std::to_string(std::uint64_t{vertices[k]} + 1);
+    }
+    return text + (vertices.size() > kMost ? " ..." : "");
   }
 
+  FirstMesh first_;
   std::vector<std::string> paths_;
   std::uint64_t max_memory_bytes_;
   std::vector<bool> has_compared_attributes_;  // [frame]
+  std::set<std::string> noted_;                // sets, materials and notes of later files
 };
 
 }  // namespace
 
-bool natural_less(std::string_view a, std::string_view b) {
-  std::size_t i = 0;
-  std::size_t j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (is_digit(a[i]) && is_digit(b[j])) {
-      const std::string_view m = take_number(a, i);
-      const std::string_view n = take_number(b, j);
-      if (m.size() != n.size()) return m.size() < n.size();
-      if (m != n) return m < n;
-    } else {
-      // As bytes: char is signed on some machines.
-      if (a[i] != b[j])
-        return static_cast<std::uint8_t>(a[i]) < static_cast<std::uint8_t>(b[j]);
-      ++i;
-      ++j;
+InputResult<FrameFiles> list_mesh_files(const std::vector<std::string>& paths) {
+  const std::string where = "the " + std::to_string(paths.size()) + " files given";
+  const std::string extension = lower_extension(paths.front());
+  for (const std::string& path : paths) {
+    std::error_code ec;
+    if (fs::is_directory(path, ec) || !is_mesh_extension(path)) {
+      return InputError{path + ": several inputs are the frames of one sequence, each a " +
+                        extensions_text({InputFormat::Holds::kMesh}) +
+                        " file; encode others one by one"};
     }
+    if (lower_extension(path) == extension) continue;
+    return InputError{path + ": is no " + extension + " file, as " + paths.front() +
+                      " is; give the frames of one sequence"};
   }
-  if (i < a.size() || j < b.size()) return i == a.size();
-  return a < b;  // equal except for leading zeros
+  return sort_frames(paths, where);
 }
 
-InputResult<std::vector<std::string>> list_mesh_folder(const std::string& folder) {
+InputResult<FrameFiles> list_mesh_folder(const std::string& folder) {
   auto paths = list_matching(
       folder, [](const std::string& name) { return name[0] != '.' && is_mesh_extension(name); },
       folder + ": no " + extensions_text({InputFormat::Holds::kMesh}) +
           " file in this folder; expected one per frame");
-  if (!paths) return paths;
+  if (!paths) return paths.error();
   const std::string extension = lower_extension(paths->front());
   for (const std::string& path : *paths) {
     if (lower_extension(path) == extension) continue;
@@ -257,62 +332,44 @@ InputResult<std::vector<std::string>> list_mesh_folder(const std::string& folder
                       " files; choose with a pattern, as in " +
                       (fs::path(folder) / ("*" + extension)).string()};
   }
-  return paths;
+  return sort_frames(std::move(*paths), folder);
 }
 
-InputResult<std::vector<std::string>> list_mesh_glob(const std::string& glob) {
+InputResult<FrameFiles> list_mesh_glob(const std::string& glob) {
   const fs::path path(glob);
   const std::string pattern = path.filename().string();
-  return list_matching(
+  auto paths = list_matching(
       path.parent_path(),
       [&](const std::string& name) {
         return fnmatch(pattern.c_str(), name.c_str(), FNM_PERIOD) == 0;
       },
       glob + ": no file matches; expected one file per frame");
+  if (!paths) return paths.error();
+  return sort_frames(std::move(*paths), glob);
 }
 
-InputResult<std::vector<std::string>> list_mesh_pattern(const std::string& pattern) {
-  const fs::path path(pattern);
-  const auto name = parse_pattern(path.filename().string());
-  if (!name) {
-    return InputError{pattern +
-                      ": expected one %d or %04d (any width) in the file name, as in "
-                      "walk_%04d.obj"};
-  }
-  const auto names = list_names(path.parent_path());
+InputResult<FrameFiles> list_mesh_pattern(const std::string& pattern) {
+  const auto names = list_names(fs::path(pattern).parent_path());
   if (!names) return names.error();
-  std::vector<std::uint64_t> numbers;
-  for (const std::string& candidate : *names) {
-    if (const auto number = name->number_of(candidate)) numbers.push_back(*number);
-  }
-  if (numbers.empty()) {
-    return InputError{pattern + ": no such file, for example " + name->with(0) + " or " +
-                      name->with(1)};
-  }
-  std::sort(numbers.begin(), numbers.end());
-  std::vector<std::string> paths;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (numbers[i] != numbers[0] + i) {
-      return InputError{(path.parent_path() / name->with(numbers[0] + i)).string() +
-                        ": this frame is missing, though " + name->with(numbers[i]) +
-                        " exists; number the files without gaps"};
-    }
-    paths.push_back((path.parent_path() / name->with(numbers[i])).string());
-  }
-  return paths;
+  return select_frames(pattern, *names);
 }
 
-InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(std::vector<std::string> paths,
+InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(FrameFiles files,
                                                              const InputOptions& options) {
+  std::vector<std::string>& paths = files.paths;
   assert(!paths.empty());
   auto first = read_mesh_and_materials(paths[0], options.textures, options.max_memory_bytes);
   if (!first) return first.error();
+  FirstMesh faces{std::move(first->polygons), std::move(first->cuts), first->material_library};
+  const std::uint64_t more =
+      faces.polygons.size() * sizeof(MeshPolygon) + faces.cuts.memory_bytes();
   auto shape =
       shape_of(std::move(*first), static_cast<std::uint32_t>(paths.size()), options.frame_rate);
-  for (std::string& note : notes_on(paths)) shape.notes.push_back(std::move(note));
+  shape.memory_bytes += more;
+  for (std::string& note : files.notes) shape.notes.push_back(std::move(note));
   shape.files.insert(shape.files.begin(), paths.begin(), paths.end());
   return std::unique_ptr<FrameSource>(std::make_unique<MeshSequence>(
-      std::move(shape), std::move(paths), options.max_memory_bytes));
+      std::move(shape), std::move(faces), std::move(paths), options.max_memory_bytes));
 }
 
 }  // namespace rlpc

@@ -126,6 +126,10 @@ bool ObjAttributes::finish(SingleMesh& mesh, const MeshLimit& limit) {
                              (normal_of_.empty() ? 0 : 3 * sizeof(float) * num_triangles) +
                              bytes(uv_) + bytes(normals_);
   if (!limit.leaves_room_for(Held{mesh.memory_bytes() + memory_bytes()}, more)) return false;
+  const auto cut = [&](std::vector<std::uint32_t>& value_of_corner) {
+    value_of_corner.resize(3 * num_triangles, kNoValue);
+    mesh.cuts.apply(value_of_corner);
+  };
   std::vector<SourceAttribute>& sets = mesh.attributes.sets;
   if (!colours_.empty()) {
     colours_.resize(mesh.xyz.size(), -1.0F);
@@ -139,12 +143,12 @@ bool ObjAttributes::finish(SingleMesh& mesh, const MeshLimit& limit) {
   }
   // Indices without any value are ignored.
   if (!normals_.empty() && !normal_of_.empty()) {
-    normal_of_.resize(3 * num_triangles, kNoValue);
+    cut(normal_of_);
     sets.push_back(
         normal_attribute(std::move(normals_), std::move(normal_of_), mesh.xyz, mesh.triangles));
   }
   if (!uv_.empty() && !uv_of_.empty()) {
-    uv_of_.resize(3 * num_triangles, kNoValue);
+    cut(uv_of_);
     sets.push_back(uv_attribute(std::move(uv_), std::move(uv_of_)));
   }
   mesh.materials.names = names_of(materials_);

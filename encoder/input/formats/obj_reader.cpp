@@ -12,6 +12,7 @@
 #include "encoder/input/formats/mesh_attributes.h"
 #include "encoder/input/formats/mesh_text.h"
 #include "encoder/input/formats/obj_attributes.h"
+#include "encoder/input/formats/obj_rest.h"
 #include "encoder/input/input_file.h"
 
 namespace rlpc {
@@ -42,18 +43,19 @@ class ObjParser {
         read_comment();
       } else if (limit_.with_attributes) {
         read_attribute(keyword);
+      } else {
+        rest_.add_line(keyword, "");
       }
       if (error_) return *error_;
     }
-    if (mesh_.xyz.empty()) {
-      return InputError{name_ + ": no vertex (no line \"v x y z\"); is this an OBJ file?"};
-    }
+    if (mesh_.xyz.empty()) return has_no_vertex();
     check_highest(vertices_, num_vertices());
+    if (!error_ && !cut_polygons(mesh_, limit_)) fail_for_memory();
     if (limit_.with_attributes) {
       check_or_ignore(uv_, attributes_.num_uv());
       check_or_ignore(normals_, attributes_.num_normals());
       if (!error_ && !attributes_.finish(mesh_, limit_)) fail_for_memory();
-      note_what_is_dropped();
+      if (auto note = rest_.note()) mesh_.notes.push_back(std::move(*note));
     }
     if (error_) return *error_;
     return std::move(mesh_);
@@ -68,6 +70,13 @@ class ObjParser {
 
   void fail(std::uint64_t line, const std::string& what) {
     if (!error_) error_ = InputError{name_ + ":" + std::to_string(line) + ": " + what};
+  }
+
+  InputError has_no_vertex() const {
+    return {name_ + (rest_.num_unknown_lines() > 0
+                         ? ": no vertex (no line \"v x y z\"); is this an OBJ file?"
+                         : ": an empty mesh, without a vertex; every frame needs the vertices "
+                           "and faces of the first")};
   }
 
   void fail_for_memory() { fail(words_.line(), memory_problem(limit_.of_all)); }
@@ -89,18 +98,12 @@ class ObjParser {
                           " index, as the file has none of these");
   }
 
-  void note_what_is_dropped() {
-    if (num_without_triangles_ == 0) return;
-    mesh_.notes.push_back("dropped: points, lines, curves or surfaces (" +
-                          std::to_string(num_without_triangles_) + ")");
-  }
-
   void push(float value, std::vector<float>& list) {
     if (!limit_.leaves_room(*this, list)) return fail_for_memory();
     list.push_back(value);
   }
 
-  // Reads "v x y z" or "v x y z r g b", and ignores other rests of the line.
+  // Reads "v x y z" or "v x y z r g b", and notes other rests of the line.
   void read_vertex() {
     if (num_vertices() == std::numeric_limits<std::uint32_t>::max()) {
       return fail(words_.line(), "more than 2^32 - 1 vertices");
@@ -110,18 +113,20 @@ class ObjParser {
       push(read_float("a vertex needs three coordinates", &left), mesh_.xyz);
       push(left, mesh_.left);
     }
-    if (!error_ && limit_.with_attributes) read_colour();
+    if (!error_ && limit_.with_attributes) read_rest_of_vertex();
   }
 
-  void read_colour() {
+  void read_rest_of_vertex() {
     std::array<float, 3> colour{};
     std::size_t count = 0;
     for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
       std::optional<std::string> problem;
       const float value = parse_coordinate(word, problem);
-      if (problem || count == colour.size()) return;
+      if (problem || count == colour.size()) return rest_.add_vertex_numbers();
       colour[count++] = value;
     }
+    if (count == 1 && colour[0] != 1.0F) rest_.add_weight();
+    if (count == 2) rest_.add_vertex_numbers();
     if (count < colour.size()) return;
     const auto vertex = static_cast<std::size_t>(num_vertices() - 1);
     if (!attributes_.add_colour(vertex, colour, limit_, mesh_.memory_bytes())) {
@@ -148,6 +153,7 @@ class ObjParser {
       std::optional<std::string> problem;
       push(word.empty() ? 0 : parse_coordinate(word, problem), attributes_.uv());
       if (problem) fail(words_.line(), *problem);
+      if (parse_number(words_.next()).value_or(0.0) != 0.0) rest_.add_third_uv();
     } else if (keyword == "vn") {
       for (int axis = 0; axis < 3 && !error_; ++axis) {
         push(read_float("a normal needs three coordinates"), attributes_.normals());
@@ -158,16 +164,18 @@ class ObjParser {
       attributes_.set_object(words_.rest_of_words());
     } else if (keyword == "g") {
       attributes_.set_group(words_.rest_of_words());
-    } else if (keyword == "mtllib" && mesh_.material_library.empty()) {
-      mesh_.material_library = words_.rest_of_words();
-    } else if (keyword == "l" || keyword == "p" || keyword == "curv" || keyword == "surf") {
-      ++num_without_triangles_;
+    } else if (keyword == "mtllib") {
+      if (!mesh_.material_library.empty()) mesh_.material_library += '\n';
+      mesh_.material_library += words_.rest_of_words();
+    } else {
+      rest_.add_line(keyword, words_.next());
     }
     if (!limit_.leaves_room_for(*this, 0)) fail_for_memory();
   }
 
   // Reads "f a b c ..." as a fan from the first corner.
   void read_face() {
+    const std::size_t first_triangle = mesh_.triangles.size();
     std::array<ObjCorner, 3> fan{};
     std::size_t corners = 0;
     for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
@@ -182,6 +190,7 @@ class ObjParser {
       fail(words_.line(),
            "a face of " + std::to_string(corners) + " corners; it needs 3 or more");
     }
+    if (!limit_.add_face(mesh_, first_triangle)) fail_for_memory();
   }
 
   void add_triangle(const std::array<ObjCorner, 3>& corners) {
@@ -255,7 +264,7 @@ class ObjParser {
   SingleMesh mesh_;
   ObjAttributes attributes_;
   std::optional<InputError> error_;
-  std::uint64_t num_without_triangles_ = 0;  // elements
+  ObjRest rest_;
   Indexed vertices_{"vertex"};
   Indexed uv_{"texture coordinate"};
   Indexed normals_{"normal"};

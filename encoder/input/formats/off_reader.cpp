@@ -25,7 +25,9 @@ class OffParser {
     check_keyword(words_.next_of_any_line());
     const std::uint32_t vertices = read_number("the number of vertices");
     const std::uint32_t faces = read_number("the number of faces");
-    if (vertices == 0) fail("no vertices");
+    if (vertices == 0) {
+      fail("no vertices: an empty mesh; every frame needs the vertices and faces of the first");
+    }
     // The third number of the line, the number of edges, is ignored. A vertex takes at least 6
     // bytes, "0 0 0" and a line end; a face, "3 0 0 0", takes more.
     if ((std::uint64_t{vertices} + faces) * 6 > std::uint64_t{bytes_} + 1) {
@@ -39,6 +41,8 @@ class OffParser {
       words_.next_line();
       if (!words_.next_of_any_line().empty()) fail("has data after the last face");
     }
+    note_what_is_dropped();
+    if (!error_ && !cut_polygons(mesh_, limit_)) fail(memory_problem(limit_.of_all));
     if (error_) return *error_;
     return std::move(mesh_);
   }
@@ -53,6 +57,13 @@ class OffParser {
     if (keyword.find_first_of("4n") != keyword.npos) {
       fail(quoted(keyword) + ": only vertices in three dimensions are supported");
     }
+  }
+
+  void note_what_is_dropped() {
+    std::string list;
+    if (extra_of_vertices_) list += "numbers after the positions of vertices";
+    if (extra_of_faces_) list += std::string(list.empty() ? "" : ", ") + "colours of faces";
+    if (!list.empty() && limit_.with_attributes) mesh_.notes.push_back("dropped: " + list);
   }
 
   // Reads a count of the header, or the number of corners of a face.
@@ -75,7 +86,7 @@ class OffParser {
     return 0;
   }
 
-  // Reads "x y z" and ignores the rest of the line; skips blank lines and comments.
+  // Reads "x y z" and drops the rest of the line; skips blank lines and comments.
   void read_vertex() {
     words_.next_line();
     std::string_view word = words_.next_of_any_line();
@@ -93,13 +104,15 @@ class OffParser {
       if (problem) fail(*problem);
       if (axis < 2) word = words_.next();
     }
+    extra_of_vertices_ |= !words_.next().empty();
   }
 
-  // Reads "n a b c ..." as a fan from the first corner, and ignores the rest of the line.
+  // Reads "n a b c ..." as a fan from the first corner, and drops the rest of the line.
   void read_face(std::uint32_t vertices) {
     words_.next_line();
     const std::uint32_t corners = read_number("the number of corners of a face");
     if (corners < 3) fail("a face of " + to_string(corners) + " corners; it needs 3 or more");
+    const std::size_t first_triangle = mesh_.triangles.size();
     Triangle fan{};
     for (std::uint32_t i = 0; i < corners && !error_; ++i) {
       const std::uint32_t vertex = parse_number(words_.next(), "a vertex index");
@@ -115,6 +128,8 @@ class OffParser {
       }
       mesh_.triangles.push_back(fan);
     }
+    extra_of_faces_ |= !words_.next().empty();
+    if (!limit_.add_face(mesh_, first_triangle)) fail(memory_problem(limit_.of_all));
   }
 
   TextWords words_;
@@ -122,6 +137,8 @@ class OffParser {
   const std::string& name_;
   const MeshLimit& limit_;
   SingleMesh mesh_;
+  bool extra_of_vertices_ = false;  // after what is read of a line
+  bool extra_of_faces_ = false;
   std::optional<InputError> error_;
 };
 

@@ -1,5 +1,5 @@
 // OFF: vertices and polygons of the text form; colours, normals and texture coordinates after
-// the positions are skipped.
+// the positions are dropped, with a note.
 #pragma once
 
 #include <string>

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "encoder/input/formats/mesh_attributes.h"
+#include "encoder/input/formats/mesh_text.h"
 #include "encoder/input/input_file.h"
 
 namespace rlpc {
@@ -104,8 +105,6 @@ void PlyAttributes::find_roles(const PlyHeader& header, bool with_attributes) {
       has_materials_ = true;
     }
     if (colour_width_ > 0) {
-      std::vector<PlyRole> unused(element.properties.size());
-      drops_face_colours_ = claim_colours(element, Kind::kFaceColour, unused) > 0;
       continue;
     }
     face_colour_width_ = claim_colours(element, Kind::kFaceColour, face_roles_);
@@ -115,6 +114,29 @@ void PlyAttributes::find_roles(const PlyHeader& header, bool with_attributes) {
   for (PlyRole& role : vertex_roles_) {
     if (role.kind == Kind::kUv) role.kind = Kind::kSkipped;
   }
+}
+
+std::string PlyAttributes::without_role(const PlyHeader& header) const {
+  std::string list;
+  const auto add = [&](const std::string& what) { list += (list.empty() ? "" : ", ") + what; };
+  for (const PlyElement& element : header.elements) {
+    const bool is_vertex = element.name == "vertex";
+    if (element.count == 0) continue;
+    if (!is_vertex && element.name != "face") {
+      add("element " + quoted(element.name) + " (" + std::to_string(element.count) + ")");
+      continue;
+    }
+    const std::vector<PlyRole>& roles = is_vertex ? vertex_roles_ : face_roles_;
+    std::string names;
+    for (std::size_t i = 0; i < roles.size(); ++i) {
+      const std::string& name = element.properties[i].name;
+      if (roles[i].kind != Kind::kSkipped) continue;
+      names += (names.empty() ? "" : ", ") + quoted(name);
+    }
+    if (!names.empty()) add(names + (is_vertex ? " of vertices" : " of faces"));
+  }
+  if (header.has_info) add("obj_info");
+  return list;
 }
 
 std::size_t PlyAttributes::floats_per_vertex() const {
@@ -192,6 +214,7 @@ bool PlyAttributes::finish(SingleMesh& mesh, const MeshLimit& limit) {
   // Lists that grow by their last values, and materials as floats.
   const std::uint64_t more = bytes(uv_) + bytes(materials_);
   if (!limit.leaves_room_for(Held{mesh.memory_bytes() + memory_bytes()}, more)) return false;
+  mesh.cuts.apply(uv_of_);
   std::vector<SourceAttribute>& sets = mesh.attributes.sets;
   const std::size_t width = std::max(colour_width_, face_colour_width_);
   if (!colours_.empty() && !are_colours(colours_)) {
@@ -199,9 +222,6 @@ bool PlyAttributes::finish(SingleMesh& mesh, const MeshLimit& limit) {
   } else if (!colours_.empty()) {
     sets.push_back(colour_attribute(std::move(colours_), static_cast<std::uint32_t>(width),
                                     are_bytes_, std::move(colour_of_)));
-  }
-  if (drops_face_colours_) {
-    mesh.notes.emplace_back("dropped: colours of faces, beside those of vertices");
   }
   if (!normals_.empty()) {
     sets.push_back(normal_attribute(std::move(normals_), {}, mesh.xyz, mesh.triangles));

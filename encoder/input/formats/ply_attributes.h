@@ -44,6 +44,10 @@ class PlyAttributes {
   const std::vector<PlyRole>& of_vertices() const { return vertex_roles_; }
   const std::vector<PlyRole>& of_faces() const { return face_roles_; }
 
+  // Properties and elements that have no role, by name: "stress of vertex"; empty: none. To be
+  // called after find_roles(), with attributes.
+  std::string without_role(const PlyHeader& header) const;
+
   // Floats that a vertex needs besides its position.
   std::size_t floats_per_vertex() const;
   void set_num_vertices(std::size_t count);
@@ -74,7 +78,6 @@ class PlyAttributes {
   std::vector<std::uint32_t> uv_of_;  // [corner]; empty: of vertices
   std::vector<std::uint32_t> colour_of_;  // likewise
   std::vector<std::uint32_t> materials_;  // [triangle]; empty: none
-  bool drops_face_colours_ = false;       // as vertices have some
   bool has_corner_uv_ = false;
   bool has_bad_uv_ = false;  // lists of another length
   bool has_materials_ = false;

@@ -92,7 +92,9 @@ class HeaderParser {
       parse_comment(words);
     } else if (keyword == "end_header") {
       at_end_header_ = true;
-    } else if (keyword != "obj_info") {
+    } else if (keyword == "obj_info") {
+      header_.has_info = true;
+    } else {
       fail(quoted(keyword) +
            " does not begin a line of a PLY header; expected format, element, property, "
            "comment or "

@@ -35,6 +35,7 @@ struct PlyHeader {
   std::vector<PlyElement> elements;     // in the order of the file
   std::optional<FrameRate> frame_rate;  // of "comment frame_rate N/D"
   std::vector<std::string> textures;    // of "comment TextureFile NAME"
+  bool has_info = false;                // lines "obj_info"
   std::size_t body = 0;                 // offset of the first byte after the header
   std::uint64_t body_line = 0;          // number of the line that begins there
 };

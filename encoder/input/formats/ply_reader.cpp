@@ -30,10 +30,12 @@ class PlyReader {
     for (const PlyElement& element : header_.elements) {
       if (element.name == "vertex") num_vertices_ = element.count;
     }
-    if (num_vertices_ == 0) {
-      return InputError{name_ + ": no vertices: the header needs an element \"vertex\""};
-    }
+    if (num_vertices_ == 0) return has_no_vertex();
     attributes_.find_roles(header_, limit_.with_attributes);
+    if (limit_.with_attributes) {
+      const std::string dropped = attributes_.without_role(header_);
+      if (!dropped.empty()) mesh_.notes.push_back("dropped: " + dropped);
+    }
     for (const PlyElement& element : header_.elements) {
       if (auto error = check(element)) return *error;
       read_element(element);
@@ -41,7 +43,9 @@ class PlyReader {
     }
     body_.expect_end();
     if (auto error = failure()) return *error;
-    if (!attributes_.finish(mesh_, limit_)) return too_large();
+    if (!cut_polygons(mesh_, limit_) || !attributes_.finish(mesh_, limit_)) {
+      return too_large();
+    }
     if (limit_.with_attributes) mesh_.materials.textures = header_.textures;
     return std::move(mesh_);
   }
@@ -52,6 +56,16 @@ class PlyReader {
       if (p.name == name) return !p.length;
     }
     return false;
+  }
+
+  InputError has_no_vertex() const {
+    for (const PlyElement& element : header_.elements) {
+      if (element.name != "vertex") continue;
+      return {name_ +
+              ": an empty mesh, without a vertex; every frame needs the vertices and "
+              "faces of the first"};
+    }
+    return {name_ + ": no vertices: the header needs an element \"vertex\""};
   }
 
   InputError too_large() const {
@@ -140,6 +154,10 @@ class PlyReader {
         read_of_face(attributes_.of_faces()[i], element.properties[i]);
       }
       if (failed()) return;
+      if (!limit_.add_face(mesh_, first)) {
+        problem_ = memory_problem(limit_.of_all);
+        return;
+      }
       problem_ = attributes_.end_face(mesh_.triangles.size() - first, mesh_, limit_);
       if (failed()) return;
     }

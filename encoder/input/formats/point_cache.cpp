@@ -16,6 +16,7 @@
 #include "common/io/messages.h"
 #include "encoder/input/axes_fit.h"
 #include "encoder/input/formats/material_files.h"
+#include "encoder/input/formats/mesh_text.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/mesh_reader.h"
 #include "encoder/input/piped_frames.h"
@@ -36,9 +37,9 @@ struct Layout {
   std::int32_t points = 0;
   std::int32_t frames = 0;
   std::uint64_t first_byte = 0;  // offset of the positions
-  // Whether start and sample rate of a PC2 file are finite. They are not used, but if they are
-  // not finite, the file is probably damaged.
-  bool has_rate = true;
+  // Of PC2 files: the frame of the first sample, and frames per sample. They are not used.
+  float start = 0.0F;
+  float rate = 1.0F;
 };
 
 InputError too_short(const InputFile& file, std::size_t header_bytes) {
@@ -56,9 +57,8 @@ InputResult<Layout> parse_pc2_header(const std::string& path,
   if (version != 1) {
     return InputError{path + ": PC2 version " + to_string(version) + " at byte 12; expected 1"};
   }
-  const bool has_rate =
-      std::isfinite(load_f32(header, 20)) && std::isfinite(load_f32(header, 24));
-  return Layout{false, load_i32(header, 16), load_i32(header, 28), kPc2HeaderBytes, has_rate};
+  return Layout{false,           load_i32(header, 16), load_i32(header, 28),
+                kPc2HeaderBytes, load_f32(header, 20), load_f32(header, 24)};
 }
 
 InputResult<Layout> read_pc2_header(InputFile& file) {
@@ -148,12 +148,31 @@ bool may_begin_cache(const std::string& begin, std::uint32_t num_vertices) {
   return begin.size() >= kMddHeaderBytes && load_u32_be(begin, 4) == num_vertices;
 }
 
+// What is lost of a PC2 header.
+std::vector<std::string> notes_on_pc2(const std::string& path, const Layout& layout) {
+  if (!std::isfinite(layout.start) || !std::isfinite(layout.rate)) {
+    return {"start and sample rate in " + path +
+            " are not finite; they are not used, but the file may be damaged"};
+  }
+  std::string list;
+  if (layout.start != 0.0F) list += "start " + shortest_text(layout.start);
+  if (layout.rate != 1.0F) {
+    list += (list.empty() ? "" : ", ") + ("sample rate " + shortest_text(layout.rate));
+  }
+  if (list.empty()) return {};
+  return {"dropped: " + list + " of " + path +
+          "; each sample is a frame, the first at 0 s (--fps sets their rate)"};
+}
+
 // The times of an MDD file.
 struct FrameTimes {
   // Set if the times are evenly spaced seconds; otherwise they are frame numbers or
   // meaningless.
   std::optional<FrameRate> rate;
   bool may_be_times = true;  // they are finite and not descending
+  bool are_even = true;
+  double start = 0.0;
+  double interval = 0.0;  // mean
 };
 
 InputResult<FrameTimes> read_times(InputFile& file, const Layout& layout,
@@ -171,15 +190,44 @@ InputResult<FrameTimes> read_times(InputFile& file, const Layout& layout,
     const bool descends = f > 0 && times[f] < times[f - 1];
     told.may_be_times = told.may_be_times && std::isfinite(times[f]) && !descends;
   }
+  told.start = times.front();
   if (count < 2) return told;
   const double interval = (times.back() - times.front()) / static_cast<double>(count - 1);
   constexpr double kUneven = 0.02;  // tolerance as a fraction of the interval
   for (std::size_t f = 0; f < count; ++f) {
     const double expected = times.front() + interval * static_cast<double>(f);
-    if (!(std::abs(times[f] - expected) <= kUneven * interval)) return told;
+    told.are_even = told.are_even && std::abs(times[f] - expected) <= kUneven * interval;
   }
+  told.interval = interval;
+  if (!told.are_even) return told;
   told.rate = frame_rate_near(1.0 / interval);
   return told;
+}
+
+// What is lost of the times of an MDD file.
+std::vector<std::string> notes_on_times(const std::string& path, const FrameTimes& times,
+                                        bool has_rate) {
+  const std::string fps = has_rate ? "" : "; frames are 1/30 s apart (--fps sets another rate)";
+  if (!times.may_be_times) {
+    if (has_rate) return {};
+    return {"the frame times in " + path +
+            " are not finite and ascending, and not used: 30 frames per second (--fps sets "
+            "another rate)"};
+  }
+  if (!times.are_even) {
+    return {"dropped: the uneven frame times of " + path + (has_rate ? "" : fps)};
+  }
+  std::string list;
+  if (times.start != 0.0) {
+    list += "start " + shortest_text(static_cast<float>(times.start));
+  }
+  if (!times.rate && !has_rate && times.interval > 0.0) {
+    list += (list.empty() ? "interval " : ", interval ") +
+            shortest_text(static_cast<float>(times.interval));
+  }
+  if (list.empty()) return {};
+  return {"dropped: " + list + " of the frame times of " + path +
+          (times.rate ? "; the first frame is at 0 s" : fps)};
 }
 
 float load_value(std::span<const char> bytes, std::size_t offset, const Layout& layout) {
@@ -244,19 +292,13 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(const InputOptions& o
   if (auto error = check_layout(*file, *layout, mesh_path, num_vertices)) return *error;
   FrameRate usual;
   std::vector<std::string> notes;
-  if (!layout->has_rate) {
-    notes.push_back("start and sample rate in " + file->path() +
-                    " are not finite; they are not used, but the file may be damaged");
-  }
+  if (!layout->big_endian) notes = notes_on_pc2(file->path(), *layout);
   if (layout->big_endian) {
     const auto times = read_times(*file, *layout, max_memory_bytes);
     if (!times) return times.error();
     usual = times->rate.value_or(usual);
-    if (!times->may_be_times && !frame_rate) {
-      notes.push_back("the frame times in " + file->path() +
-                      " are not finite and ascending, and not used: 30 frames per second "
-                      "(--fps sets another rate)");
-    }
+    notes = notes_on_times(file->path(), *times,
+                           frame_rate.has_value() || mesh->frame_rate.has_value());
   }
   const std::vector<float> mesh_xyz = mesh->xyz;
   auto shape =
@@ -318,9 +360,10 @@ InputResult<std::unique_ptr<FrameStream>> open_pc2_stream(
   if (!layout) return layout.error();
   if (auto error = check_points(name, *layout, mesh_path, num_vertices)) return *error;
   FrameSource::Shape shape = shape_of(std::move(*mesh), 1, frame_rate);
+  for (std::string& note : notes_on_pc2(name, *layout)) shape.notes.push_back(std::move(note));
   return std::unique_ptr<FrameStream>(std::make_unique<Pc2Stream>(
       FrameStream::Shape{name, num_vertices, shape.frame_rate, std::move(shape.triangles),
-                         std::move(shape.attributes)},
+                         std::move(shape.attributes), std::move(shape.notes)},
       file));
 }
 

@@ -1,0 +1,282 @@
+// Whatever is in an input is in the stream, or named.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "common/testing/scratch_folder_test.h"
+#include "encoder/input/frame_source.h"
+#include "encoder/input/frame_stream.h"
+#include "encoder/input/gltf/builder.h"
+#include "encoder/input/input_notes.h"
+
+namespace rlpc {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+void put_number(std::string& bytes, std::uint32_t value, bool big_endian) {
+  for (int i = 0; i < 4; ++i) {
+    bytes += static_cast<char>(value >> 8 * (big_endian ? 3 - i : i));
+  }
+}
+void put_float(std::string& bytes, float value, bool big_endian) {
+  put_number(bytes, std::bit_cast<std::uint32_t>(value), big_endian);
+}
+
+// Of three points and two samples.
+std::string pc2(float start, float rate) {
+  std::string bytes("POINTCACHE2\0\1\0\0\0\3\0\0\0", 20);
+  put_float(bytes, start, false);
+  put_float(bytes, rate, false);
+  put_number(bytes, 2, false);
+  for (int i = 0; i < 18; ++i) put_float(bytes, static_cast<float>(i % 5), false);
+  return bytes;
+}
+
+std::string mdd(const std::vector<float>& times) {
+  std::string bytes;
+  put_number(bytes, static_cast<std::uint32_t>(times.size()), true);
+  put_number(bytes, 3, true);
+  for (const float time : times) put_float(bytes, time, true);
+  for (std::size_t i = 0; i < 9 * times.size(); ++i) {
+    put_float(bytes, static_cast<float>(i % 5), true);
+  }
+  return bytes;
+}
+
+class LossesTest : public ScratchFolderTest {
+ protected:
+  // All notes, a line each, or the error.
+  static std::string notes_of(const InputOptions& options) {
+    const auto source = open_frame_source(options);
+    if (!source) return source.error().message;
+    std::vector<float> xyz(3 * std::size_t{(*source)->num_vertices()});
+    for (std::uint32_t f = 0; f < (*source)->num_frames(); ++f) {
+      if (const auto error = (*source)->read_frame(f, xyz)) return error->message;
+    }
+    std::string text;
+    for (const std::string& note : (*source)->notes()) {
+      EXPECT_TRUE(tells_loss(note)) << note;
+      text += note + "\n";
+    }
+    return text;
+  }
+  static void expect_named(const InputOptions& options, const std::vector<std::string>& names) {
+    const std::string notes = notes_of(options);
+    for (const std::string& name : names) {
+      EXPECT_NE(notes.find(name), std::string::npos) << name << "\n" << notes;
+    }
+  }
+};
+
+TEST_F(LossesTest, NamesWhatObjFilesHaveAndStreamsHaveNot) {
+  const std::string mesh = put(
+      "a.obj",
+      "mtllib a.mtl\nmtllib b.mtl\nv 0 0 0 0.5\nv 1 0 0 7 7\nv 0 1 0\nvt 0 0 0.5\nvn 0 0 1\n"
+      "vp 1 2\ns 1\nmg 2\nbevel on\nusemap m\nshow all\nf 1/1/1 2/1/1 3/1/1\nl 1 2\np 1\np 2\n"
+      "cstype bezier\ncurv 0 1 1 2\nend\n");
+  put("a.mtl", "newmtl a\nmap_Ks gloss.png\n");
+  expect_named({mesh, "", {}},
+               {"lines (1)", "points (2)", "smoothing groups", "merging groups",
+                "free-form curves and surfaces", "settings of display", "usemap",
+                "weights of vertices (1)", "numbers after vertices that are no colour (1)",
+                "third texture coordinates (1)",
+                "unknown lines, the first of them \"show\" (1)", "b.mtl", "gloss.png"});
+  // What stays, or says nothing.
+  EXPECT_EQ(notes_of({put("b.obj",
+                          "# by hand\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\n"
+                          "vt 0 0\nvn 0 0 1\ns off\nf 1/1/1 2/1/1 3/1/1\n"),
+                      "",
+                      {}}),
+            "");
+  EXPECT_EQ(notes_of({put("c.obj", "v 0 0 0 1\nv 1 0 0 1.0\nv 0 1 0\nf 1 2 3\n"), "", {}}), "");
+}
+
+TEST_F(LossesTest, NamesWhatPlyFilesHaveAndStreamsHaveNot) {
+  const std::string mesh = put(
+      "a.ply",
+      "ply\nformat ascii 1.0\nobj_info scan 7\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nproperty float stress\nproperty float vx\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty list uchar int "
+      "n\n"
+      "element face 1\nproperty list uchar int vertex_indices\nproperty int id\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n"
+      "0 0 0 5 1 255 0 0 0\n1 0 0 5 1 255 0 0 0\n0 1 0 5 1 255 0 0 0\n3 0 1 2 7 1 2 3\n0 1\n");
+  expect_named({mesh, "", {}}, {"\"stress\", \"vx\", \"n\" of vertices",
+                                "\"id\", \"red\", \"green\", \"blue\" of faces",
+                                "element \"edge\" (1)", "obj_info"});
+}
+
+TEST_F(LossesTest, NamesWhatOffFilesHaveAndStreamsHaveNot) {
+  expect_named(
+      {put("a.off", "COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0\n0 1 0\n3 0 1 2 1 0 0\n"), "", {}},
+      {"numbers after the positions of vertices", "colours of faces"});
+  EXPECT_EQ(notes_of({put("b.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0 # c\n3 0 1 2\n"), "", {}}),
+            "");
+}
+
+TEST_F(LossesTest, NamesTheTimesOfPointCaches) {
+  const std::string mesh = put("a.obj", kTriangle);
+  const auto points = [&](const std::string& name, const std::string& bytes) {
+    return InputOptions{mesh, put(name, bytes), {}};
+  };
+  EXPECT_EQ(notes_of(points("a.pc2", pc2(0, 1))), "");
+  expect_named(points("b.pc2", pc2(-10, 0.5F)), {"start -10, sample rate 0.5", "--fps"});
+  EXPECT_EQ(notes_of(points("a.mdd", mdd({0, 0.04F, 0.08F}))), "");
+  expect_named(points("b.mdd", mdd({0, 0.04F, 0.2F})), {"uneven frame times", "--fps"});
+  expect_named(points("c.mdd", mdd({1, 1.04F, 1.08F})), {"start 1 of the frame times"});
+  expect_named(points("d.mdd", mdd({0, 1, 2})), {"interval 1 of the frame times", "--fps"});
+  InputOptions given = points("e.mdd", mdd({0, 0.04F, 0.2F}));
+  given.frame_rate = FrameRate{25, 1};
+  expect_named(given, {"uneven frame times"});
+}
+
+TEST_F(LossesTest, NamesTheHeaderOfAPipedPointCache) {
+  const std::string mesh = put("a.obj", kTriangle);
+  std::FILE* const file = std::fopen(put("a.pc2", pc2(5, 1)).c_str(), "rb");
+  const auto stream = open_frame_stream(file, mesh, {});
+  ASSERT_TRUE(stream) << stream.error().message;
+  ASSERT_EQ((*stream)->shape().notes.size(), 1U);
+  EXPECT_NE((*stream)->shape().notes[0].find("start 5"), std::string::npos);
+  std::fclose(file);
+}
+
+TEST_F(LossesTest, NamesWhatLaterFramesHaveOtherwise) {
+  const auto frame = [](const std::string& library, const std::string& more) {
+    return "mtllib " + library + "\n" + kTriangle + more;
+  };
+  put("a.mtl", "newmtl m\nKd 1 0 0\n");
+  put("same.mtl", "newmtl m\nKd 1 0 0\n");
+  put("other.mtl", "newmtl m\nKd 0 1 0\nmap_Kd skin.png\n");
+  put("f1.obj", frame("a.mtl", "usemtl m\nf 1 2 3\n"));
+  put("f2.obj", frame("same.mtl", "usemtl m\nf 1 2 3\n"));
+  EXPECT_EQ(notes_of({path("f%d.obj"), "", {}}), "");
+  put("f3.obj", frame("other.mtl", "usemtl m\nf 1 2 3\np 1\n"));
+  put("f4.obj", frame("a.mtl", "usemtl n\nf 1 2 3\nl 1 2\n"));
+  expect_named({path("f%d.obj"), "", {}},
+               {"f3.obj: materials (.mtl) are dropped", "f3.obj: textures are dropped",
+                "f3.obj: dropped: points (1)", "f4.obj: names of materials are dropped"});
+}
+
+// A triangle with two morph targets, of which the animation moves the second.
+GltfBuilder morphing_triangle() {
+  GltfBuilder builder;
+  const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const std::size_t positions = builder.add("VEC3", corners);
+  const std::size_t target = builder.add("VEC3", corners);
+  const std::size_t mesh =
+      builder.add_mesh({{"attributes", {{"POSITION", positions}}},
+                        {"targets", {{{"POSITION", target}}, {{"POSITION", target}}}}});
+  builder.json["meshes"][mesh]["extras"]["targetNames"] = {"jawOpen", "smile"};
+  const std::size_t node = builder.add_root({{"mesh", mesh}});
+  builder.push("animations", Json::object());
+  const std::size_t input = builder.add("SCALAR", std::vector<float>{0, 1});
+  const std::size_t output = builder.add("SCALAR", std::vector<float>{0.5F, 0, 0.5F, 1});
+  builder.add_channel(node, "weights", input, output, "LINEAR");
+  return builder;
+}
+
+TEST_F(LossesTest, NamesMorphTargets) {
+  GltfBuilder builder = morphing_triangle();
+  EXPECT_EQ(
+      notes_of({put("a.glb", builder.glb()), "", {}}),
+      "dropped: 1 morph target that no animation moves (jawOpen), morph targets (not their "
+      "motion)\n");
+  builder.json.erase("animations");
+  expect_named({put("b.glb", builder.glb()), "", {}},
+               {"2 morph targets that no animation moves (jawOpen, smile)"});
+}
+
+TEST_F(LossesTest, NamesWhatGltfFilesHaveAndStreamsHaveNot) {
+  GltfBuilder builder = morphing_triangle();
+  Json& root = builder.json;
+  Json& primitive = root["meshes"][0]["primitives"][0];
+  const std::size_t pairs = builder.add("VEC2", std::vector<float>(6, 0.5F));
+  primitive["attributes"]["TEXCOORD_1"] = pairs;  // without TEXCOORD_0
+  primitive["attributes"]["_HEAT"] = primitive["attributes"]["POSITION"];
+  primitive["targets"][0]["COLOR_0"] = primitive["attributes"]["POSITION"];
+  root["meshes"][0]["primitives"].push_back({{"attributes", {{"_X", 0}}}});
+  root["meshes"].push_back({{"primitives", Json::array({primitive})}});
+  root["meshes"][1]["primitives"][0].erase("targets");
+  root["scenes"].push_back({{"nodes", Json::array()}});
+  root["cameras"] = Json::array({Json::object()});
+  root["skins"] = Json::parse(R"([{"joints": [0]}])");
+  root["extensions"]["KHR_lights_punctual"] = Json::object();
+  root["extensions"]["KHR_materials_variants"] = Json::object();
+  root["extensions"]["KHR_xmp_json_ld"] = Json::object();
+  root["nodes"][0]["extensions"]["MPEG_thing"] = Json::object();
+  root["nodes"][0]["extras"]["health"] = 5;
+  root["scenes"][0]["extras"] = "note";
+  builder.add_root({{"name", "socket"}});
+  Json& channels = root["animations"][0]["channels"];
+  for (const char* pointer :
+       {"/materials/0/pbrMetallicRoughness/baseColorFactor", "/nodes/0/translation",
+        "/cameras/0/perspective/yfov", "/extensions/KHR_lights_punctual/lights/0/color"}) {
+    channels.push_back(
+        {{"sampler", 0},
+         {"target",
+          {{"path", "pointer"},
+           {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
+  }
+  expect_named(
+      {put("a.glb", builder.glb()), "", {}},
+      {"\"TEXCOORD_1\"", "\"_HEAT\"", "\"COLOR_0\" of morph targets",
+       "1 primitive without positions", "1 mesh outside the scene", "1 other scene", "cameras",
+       "skeleton", "lights", "variants of materials", "extension \"KHR_xmp_json_ld\"",
+       "extension \"MPEG_thing\"", "extras of nodes, scenes", "1 empty node (\"socket\")",
+       "animation of materials", "animation of nodes", "animation of cameras",
+       "animation of lights", "jawOpen"});
+}
+
+TEST_F(LossesTest, SaysWhyAGltfFileShowsNothing) {
+  GltfBuilder builder = morphing_triangle();
+  builder.json.erase("animations");
+  expect_named({put("a.glb", builder.glb()), "", {}, {"all"}}, {"none there, though all"});
+  GltfBuilder alone;
+  const std::size_t input = alone.add("SCALAR", std::vector<float>{0, 1});
+  const std::size_t output = alone.add("VEC3", std::vector<float>(6, 1.0F));
+  const std::size_t node = alone.add_root({{"name", "hips"}});
+  alone.push("animations", Json::object());
+  alone.add_channel(node, "translation", input, output, "LINEAR");
+  expect_named({put("b.glb", alone.glb()), "", {}}, {"animations alone, and no mesh"});
+}
+
+TEST_F(LossesTest, RecognisesGitLfsPointers) {
+  const std::string pointer =
+      "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 12345\n";
+  const std::string mesh = put("a.obj", kTriangle);
+  for (const char* name :
+       {"p.obj", "p.ply", "p.off", "p.glb", "p.gltf", "p.rlpd", "p", "p.abc"}) {
+    expect_named({put(name, pointer), "", {}}, {name, "Git LFS pointer", "git lfs pull"});
+  }
+  for (const char* name : {"p.pc2", "p.mdd", "cache"}) {
+    expect_named({mesh, put(name, pointer), {}}, {"Git LFS pointer"});
+  }
+  put("f1.obj", kTriangle);
+  put("f2.obj", pointer);
+  expect_named({path("f%d.obj"), "", {}}, {"f2.obj: is a Git LFS pointer"});
+}
+
+TEST_F(LossesTest, SaysThatAFrameIsEmpty) {
+  for (const char* text : {"# empty\n", "o thing\ng a\n", "\n"}) {
+    expect_named({put("a.obj", text), "", {}}, {"an empty mesh, without a vertex"});
+  }
+  expect_named({put("b.ply",
+                    "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\n"
+                    "property float y\nproperty float z\nend_header\n"),
+                "",
+                {}},
+               {"an empty mesh"});
+  expect_named({put("c.off", "OFF\n0 0 0\n"), "", {}}, {"an empty mesh"});
+  expect_named({put("d.obj", "hello world\n"), "", {}}, {"is this an OBJ file?"});
+}
+
+}  // namespace
+}  // namespace rlpc
