@@ -87,8 +87,10 @@ InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options,
         ": is already an RLPC stream; rlpcdec decodes it, rlpcinfo --extract makes "
         "it smaller"};
   }
-  if (format == nullptr && exists && path != "-") {
-    // Perhaps it cannot be read, or only stands for the file.
+  // Perhaps it cannot be read, or only stands for the file. (Not all of a pipe is read.)
+  const bool is_whole =
+      path != "-" || beginning_of(path).starts_with("version https://git-lfs");
+  if (format == nullptr && exists && is_whole) {
     const auto file = InputFile::open(path, options.max_memory_bytes);
     if (!file) return file.error();
   }

@@ -323,8 +323,8 @@ TEST_F(MeshSequenceTest, NotesSuspiciousSequences) {
 
 TEST_F(MeshSequenceTest, RefusesPatternsWithoutFiles) {
   expect_error({path("f%d.obj"), "", {}}, "no such file, for example f0.obj");
-  expect_error({path("f%s.obj"), "", {}}, "expected one %d or %04d");
-  expect_error({path("f%d_%d.obj"), "", {}}, "expected one %d or %04d");
+  expect_error({path("f%s.obj"), "", {}}, "expected one %d, %04d");
+  expect_error({path("f%d_%d.obj"), "", {}}, "expected one %d, %04d");
   expect_error({path("none/f%d.obj"), "", {}}, "cannot list the folder");
   expect_error({path("f*.obj"), "", {}}, "no file matches");
   expect_error({folder_.string(), "", {}}, "no .obj, .off or .ply file in this folder");

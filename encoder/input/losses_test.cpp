@@ -202,9 +202,14 @@ TEST_F(LossesTest, NamesWhatGltfFilesHaveAndStreamsHaveNot) {
   primitive["attributes"]["TEXCOORD_1"] = pairs;  // without TEXCOORD_0
   primitive["attributes"]["_HEAT"] = primitive["attributes"]["POSITION"];
   primitive["targets"][0]["COLOR_0"] = primitive["attributes"]["POSITION"];
-  root["meshes"][0]["primitives"].push_back({{"attributes", {{"_X", 0}}}});
-  root["meshes"].push_back({{"primitives", Json::array({primitive})}});
-  root["meshes"][1]["primitives"][0].erase("targets");
+  Json other = primitive;
+  other.erase("targets");
+  // `primitive` is not valid from here on.
+  root["meshes"][0]["primitives"].push_back(
+      Json::parse(R"({"attributes": {"_X": 0}, "targets": [{}, {}]})"));
+  Json mesh = Json::object();
+  mesh["primitives"].push_back(other);
+  root["meshes"].push_back(mesh);
   root["scenes"].push_back({{"nodes", Json::array()}});
   root["cameras"] = Json::array({Json::object()});
   root["skins"] = Json::parse(R"([{"joints": [0]}])");
@@ -266,7 +271,7 @@ TEST_F(LossesTest, RecognisesGitLfsPointers) {
 
 TEST_F(LossesTest, SaysThatAFrameIsEmpty) {
   for (const char* text : {"# empty\n", "o thing\ng a\n", "\n"}) {
-    expect_named({put("a.obj", text), "", {}}, {"an empty mesh, without a vertex"});
+    expect_named({put("a.obj", text), "", {}}, {"an empty mesh"});
   }
   expect_named({put("b.ply",
                     "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\n"

@@ -35,14 +35,20 @@ constexpr const char* kDetails = R"(More examples
 INPUT is one of
   mesh.obj --points cache.pc2   triangles from the mesh (OBJ, PLY, OFF), frames
                                 from the point cache (PC2, MDD)
-  folder/                       every .obj in it (or .ply, .off), in numeric
-                                order
-  walk_%04d.obj, 'walk_*.obj'   the matching files, in numeric order
+  folder/                       every .obj in it (or .ply, .off)
+  walk_%04d.obj, 'walk_*.obj'   the matching files; walk_%g.obj: also walk_1.25,
+                                walk_-7 and walk_007
+  a_1.obj a_2.obj ...           these files
   mesh.obj                      a single frame (also .ply, .off)
   walk.glb, walk.gltf           a glTF 2.0 scene: skins, morph targets, animated
                                 nodes
   clip.rlpd                     decoded positions
   -                             any single file, from standard input
+
+Files are frames in the order of the one number in which their names differ:
+-5 before -4, 1.25 between 1 and 2, 9 before 10. Names that do not fit are an
+error, such as that of a rest pose; a pattern chooses. Polygons are split into
+triangles as in the first frame.
 
 The format is taken from the extension, otherwise detected from the contents.
 
@@ -146,8 +152,9 @@ const CLI::Validator kBits(
     "");
 
 void add_input_options(CLI::App& app, EncodeCommandLine& line) {
-  app.add_option("INPUT", line.options.input.path,
-                 "Mesh, folder or pattern of meshes, or glTF file; - for standard input")
+  app.add_option(
+         "INPUT", line.inputs,
+         "Mesh, meshes, folder or pattern of meshes, or glTF file; - for standard input")
       ->required();
   app.add_option("--points", line.options.input.points,
                  "Point cache (.pc2, .mdd) with the frames of INPUT")

@@ -18,6 +18,7 @@ struct EncodeCommandLine {
   explicit EncodeCommandLine(EncodeOptions& to) : options(to) {}
 
   EncodeOptions& options;
+  std::vector<std::string> inputs;  // INPUT
   std::string fps;
   std::string axes;
   std::optional<std::string> gof;  // none: chosen by the profile

@@ -111,12 +111,19 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
 std::optional<std::string> check_places(const EncodeCommandLine& line) {
   const EncodeOptions& o = line.options;
   if (o.output.empty() && !o.dry_run) return "--output is required (or --dry-run)";
+  if (line.inputs.size() > 1 &&
+      (!o.input.points.empty() ||
+       std::find(line.inputs.begin(), line.inputs.end(), "-") != line.inputs.end())) {
+    return "several INPUTs are the mesh files of one sequence; they take neither --points nor "
+           "-";
+  }
   const std::string standard = " cannot both go to standard output";
   if (o.output == "-" && o.json) return "--json and the stream" + standard;
   if (o.order_map == "-" && o.json) return "--json and --order-map" + standard;
   if (o.order_map == "-" && o.output == "-") return "--order-map and the stream" + standard;
 
-  const std::array<std::string, 3> read{o.input.path, o.input.points, line.metadata_path};
+  std::vector<std::string> read = line.inputs;
+  read.insert(read.end(), {o.input.points, line.metadata_path});
   for (const std::string& written : {o.output, o.order_map}) {
     for (const std::string& other : read) {
       if (!OutputFile::is_same_file(written, other)) continue;
@@ -189,6 +196,8 @@ std::optional<int> read_encode_options(int argc, char** argv, EncodeOptions& opt
   EncodeCommandLine line(options);
   add_encode_options(app, line);
   if (const auto code = parse_command_line(app, argc, argv)) return code;
+  options.input.path = line.inputs[0];
+  options.input.more_paths.assign(line.inputs.begin() + 1, line.inputs.end());
   if (const auto wrong = check_places(line)) return complain(*wrong, kUsage);
   if (const auto wrong = finish_settings(line)) return complain(*wrong, kUsage);
   if (const auto error = read_metadata(line)) return complain(error->message);

@@ -27,6 +27,7 @@
 #include "encoder/input/frame_source.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/input_format.h"
+#include "encoder/input/input_notes.h"
 #include "encoder/input/texels.h"
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/dry_run.h"
@@ -205,9 +206,16 @@ int report_target(const EncodeOptions& o, const EncodeReport& report) {
 
 // Suggests a target whose error should not be visible. RMS errors are roughly proportional to
 // KG errors.
-std::string finer(const EncodeOptions& o, const Visibility& v) {
+std::string finer(const EncodeOptions& o, const EncodeReport& report, const Visibility& v) {
   const Target& target = o.settings.target;
-  if (target.kind == Target::kNone) return "larger --qu and --qc";
+  if (target.kind == Target::kNone) {
+    // Steps of quantisation, 2^-bits of the range, explain errors of about their size only.
+    const int bits = std::min(o.settings.baseline.qu, o.settings.baseline.qc);
+    const double explained = 1000.0 * std::ldexp(1.0, -bits);  // per cent
+    return report.metrics.kg_error_percent > explained && o.settings.components > 0
+               ? "more --components"
+               : "larger --qu and --qc";
+  }
   if (target.kind == Target::kLossless) return "more bits";
   if (target.kind == Target::kBpvf) return "a higher --bpvf";
   const double value = target.value * Visibility::kVisiblePercent / v.error_percent;
@@ -230,7 +238,7 @@ void warn_if_visible(const EncodeOptions& o, const EncodeReport& report, const V
       stderr,
       "rlpcenc: the error may be visible: RMS %.3g %% of the median edge length (above "
       "%.3g %%). Try %s.\n",
-      v.error_percent, Visibility::kVisiblePercent, finer(o, v).c_str());
+      v.error_percent, Visibility::kVisiblePercent, finer(o, report, v).c_str());
 }
 
 int tell(const EncodeOptions& o, FrameSource& source, const Expectation& e) {
@@ -276,6 +284,11 @@ InputResult<EncodeReport> encode_source(FrameSource& source, const EncodeOptions
   return std::move(encoded->report);
 }
 
+// What gets lost is told even with --quiet.
+void tell_note(const EncodeOptions& o, const std::string& name, const std::string& note) {
+  if (!o.quiet || tells_loss(note)) complain(name + ": " + note);
+}
+
 // Encodes frames as they arrive. What has been written when the input fails is a stream, and
 // stays.
 int run_live(const EncodeOptions& o) {
@@ -285,6 +298,10 @@ int run_live(const EncodeOptions& o) {
   }
   auto frames = open_frame_stream(stdin, mesh, o.input.frame_rate, o.input.max_memory_bytes);
   if (!frames) return complain(frames.error().message);
+  const std::string input = o.input.points.empty() ? o.input.path : mesh;
+  for (const std::string& note : (*frames)->shape().notes) {
+    tell_note(o, name_of_input(input), note);
+  }
   if (o.input.axes) *frames = turn_stream(std::move(*frames), *o.input.axes);
   auto stream = OutputFile::create(o.output);
   if (!stream) return complain(stream.error().message);
@@ -384,12 +401,12 @@ int run(EncodeOptions& o) {
     return complain(*written + ": is also an input; choose another name for the output",
                     kUsage);
   }
-  const std::string name = name_of_input(o.input.path);
+  const std::string name = o.input.more_paths.empty()
+                               ? name_of_input(o.input.path)
+                               : std::to_string(1 + o.input.more_paths.size()) + " files";
   std::vector<std::string> notes = (*source)->notes();
   for (std::string& doubt : doubts(o.input, **source)) notes.push_back(std::move(doubt));
-  for (const std::string& note : notes) {
-    if (!o.quiet) complain(name + ": " + note);
-  }
+  for (const std::string& note : notes) tell_note(o, name, note);
   if (o.settings.clips.empty()) o.settings.clips = (*source)->clips();
   if (!o.settings.attributes.dropped) {
     o.settings.asset = (*source)->asset();
@@ -399,8 +416,8 @@ int run(EncodeOptions& o) {
   const std::size_t told = (*source)->notes().size();
   auto report = encode_to_files(o, **source);
   if (!report) return complain(report.error().message);
-  for (std::size_t i = told; i < (*source)->notes().size() && !o.quiet; ++i) {
-    complain(name + ": " + (*source)->notes()[i]);
+  for (std::size_t i = told; i < (*source)->notes().size(); ++i) {
+    tell_note(o, name, (*source)->notes()[i]);
   }
   const std::uint32_t frames = report->header.num_frames;
   return tell(o, **source, {std::move(*report), frames});

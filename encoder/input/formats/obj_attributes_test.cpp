@@ -108,7 +108,7 @@ TEST(ObjAttributes, IndicesOutOfRangeAreNamed) {
 
 TEST(ObjAttributes, WhatIsNoFaceIsTold) {
   EXPECT_EQ(mesh_of(kVertices + "l 1 2 3\np 1\nf 1 2 3\n").notes,
-            std::vector<std::string>{"dropped: points, lines, curves or surfaces (2)"});
+            std::vector<std::string>{"dropped: lines (1), points (1)"});
 }
 
 TEST(ObjAttributes, ValuesMayFollowTheFaces) {

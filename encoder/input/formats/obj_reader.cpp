@@ -75,8 +75,8 @@ class ObjParser {
   InputError has_no_vertex() const {
     return {name_ + (rest_.num_unknown_lines() > 0
                          ? ": no vertex (no line \"v x y z\"); is this an OBJ file?"
-                         : ": an empty mesh, without a vertex; every frame needs the vertices "
-                           "and faces of the first")};
+                         : ": no vertex: an empty mesh; every frame needs the vertices and "
+                           "faces of the first")};
   }
 
   void fail_for_memory() { fail(words_.line(), memory_problem(limit_.of_all)); }

@@ -43,8 +43,8 @@ TEST(ObjReader, AcceptsEveryFormOfCorner) {
             (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}}));
 }
 
-TEST(ObjReader, SplitsPolygonsIntoAFan) {
-  EXPECT_EQ(triangles_of(kThreeVertices + "v 0 0 1\nv 2 2 2\nf 5 4 3 2 1\n"),
+TEST(ObjReader, SplitsConvexPolygonsIntoAFan) {
+  EXPECT_EQ(triangles_of("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 2 2 0\nv 0 2 0\nf 5 4 3 2 1\n"),
             (std::vector<Triangle>{{4, 3, 2}, {4, 2, 1}, {4, 1, 0}}));
 }
 

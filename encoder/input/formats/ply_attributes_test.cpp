@@ -117,7 +117,7 @@ TEST(PlyAttributes, ColoursOfFacesBesideThoseOfVerticesAreTold) {
   ASSERT_EQ(mesh.attributes.sets.size(), 1U);
   EXPECT_EQ(mesh.attributes.sets[0].domain, AttributeDomain::kVertex);
   EXPECT_EQ(mesh.notes,
-            std::vector<std::string>{"dropped: colours of faces, beside those of vertices"});
+            std::vector<std::string>{"dropped: \"red\", \"green\", \"blue\" of faces"});
 }
 
 TEST(PlyAttributes, FacesMayHaveMaterials) {

@@ -62,8 +62,8 @@ class PlyReader {
     for (const PlyElement& element : header_.elements) {
       if (element.name != "vertex") continue;
       return {name_ +
-              ": an empty mesh, without a vertex; every frame needs the vertices and "
-              "faces of the first"};
+              ": no vertices: an empty mesh; every frame needs the vertices and faces of the "
+              "first"};
     }
     return {name_ + ": no vertices: the header needs an element \"vertex\""};
   }

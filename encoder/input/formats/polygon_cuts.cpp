@@ -60,7 +60,7 @@ bool cut_polygons(SingleMesh& mesh, const MeshLimit& limit) {
   std::vector<std::uint32_t> split;
   for (const MeshPolygon& polygon : mesh.polygons) {
     // What splitting a polygon takes for each corner, with its result.
-    constexpr std::uint64_t kBytes = 200;
+    constexpr std::uint64_t kBytes = 150;
     if (!limit.leaves_room_for(mesh, kBytes * polygon.num_triangles)) return false;
     corners.clear();
     for (std::uint32_t k = 0; k < polygon.num_triangles + 2; ++k) {
