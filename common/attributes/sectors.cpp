@@ -11,17 +11,6 @@
 namespace rlpc {
 namespace {
 
-ListOfLists<std::uint32_t> corners_of_sectors(std::uint32_t num_sectors,
-                                              std::span<const std::uint32_t> of_corner) {
-  Vector<std::uint32_t> first(num_sectors + std::size_t{1}, 0);
-  for (const std::uint32_t x : of_corner) ++first[x + 1];
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  Vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  Vector<std::uint32_t> corners(of_corner.size());
-  for (std::uint32_t c = 0; c < of_corner.size(); ++c) corners[next[of_corner[c]]++] = c;
-  return {std::move(first), std::move(corners)};
-}
-
 // A list for each sector; sectors come in any order, one after the other.
 class ListsOfSectors {
  public:
@@ -102,6 +91,17 @@ class SectorQueues {
 };
 
 }  // namespace
+
+ListOfLists<std::uint32_t> corners_of_sectors(std::uint32_t num_sectors,
+                                              std::span<const std::uint32_t> of_corner) {
+  Vector<std::uint32_t> first(num_sectors + std::size_t{1}, 0);
+  for (const std::uint32_t x : of_corner) ++first[x + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  Vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  Vector<std::uint32_t> corners(of_corner.size());
+  for (std::uint32_t c = 0; c < of_corner.size(); ++c) corners[next[of_corner[c]]++] = c;
+  return {std::move(first), std::move(corners)};
+}
 
 Sectors sectors_of_corners(std::span<const std::uint32_t> edge_mates,
                            const Vector<bool>& seams) {

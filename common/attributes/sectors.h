@@ -22,6 +22,9 @@ struct Sectors {
 Sectors sectors_of_corners(std::span<const std::uint32_t> edge_mates,
                            const Vector<bool>& seams);
 Sectors sectors_of_vertices(std::uint32_t num_vertices, std::span<const Triangle> triangles);
+// The corners of each sector, ascending; of_corner: below num_sectors.
+ListOfLists<std::uint32_t> corners_of_sectors(std::uint32_t num_sectors,
+                                              std::span<const std::uint32_t> of_corner);
 
 inline constexpr std::size_t kMaxSectorTriangles = 8;
 inline constexpr std::size_t kMaxSectorRing = 8;

@@ -6,7 +6,9 @@
 #include <cstring>
 #include <utility>
 
+#include "common/attributes/recon/normals.h"
 #include "common/attributes/sectors.h"
+#include "common/surface/local_turn.h"
 
 namespace rlpc {
 namespace {
@@ -124,7 +126,8 @@ FrameNormals::FrameNormals(const AttributeSet& set, std::span<const Triangle> tr
   }
   if (!set.first_positions.empty()) {
     keep_first();
-    return;
+    find_followers();
+    if (std::find(follows_.begin(), follows_.end(), 1) == follows_.end()) return;
   }
   faces_.resize(triangles.size());
   find_terms();
@@ -134,7 +137,8 @@ void FrameNormals::find_terms() {
   if (set_.header.weight == SmoothingWeight::kAngle) return;
   terms_.reserve(3 * triangles_.size());
   for (std::size_t c = 0; c < 3 * triangles_.size(); ++c) {
-    terms_.push_back({of_corner(c), set_.face_of_triangle[c / 3]});
+    const std::uint32_t normal = of_corner(c);
+    if (follows(normal)) terms_.push_back({normal, set_.face_of_triangle[c / 3]});
   }
   std::sort(terms_.begin(), terms_.end());
   terms_.erase(std::unique(terms_.begin(), terms_.end()), terms_.end());
@@ -162,6 +166,7 @@ void FrameNormals::add_up(std::span<const Coordinate> xyz) {
   }
   if (set_.header.weight != SmoothingWeight::kAngle) return;
   for (std::size_t c = 0; c < 3 * triangles_.size(); ++c) {
+    if (!follows(of_corner(c))) continue;
     const Vec3& face = faces_[set_.face_of_triangle[c / 3]];
     const Triangle& t = triangles_[c / 3];
     const Vec3 a = difference(xyz, t[c % 3], t[(c + 1) % 3]);
@@ -181,32 +186,49 @@ void FrameNormals::keep_first() {
   corners_ = sectors_of_vertices(num_vertices, triangles_).corners;
 }
 
-// The surface around a vertex: the edges and areas of its triangles.
-template <class Coordinate>
-LocalTurn FrameNormals::turn_of(std::span<const std::uint32_t> corners,
-                                std::span<const Coordinate> xyz) const {
+// Finds the unit vectors that follow the surface (F.8.5): those that are what F.8.3 makes of
+// the first frame, and those around which there is no surface in it.
+void FrameNormals::find_followers() {
   const std::span<const std::int32_t> first = set_.first_positions;
-  LocalTurn turn;
-  for (const std::uint32_t c : corners) {
-    const Triangle& t = triangles_[c / 3];
-    const std::uint32_t v = t[c % 3];
-    const std::uint32_t p = t[(c + 1) % 3];
-    const std::uint32_t q = t[(c + 2) % 3];
-    const std::array<Vec3, 2> before{difference(first, v, p), difference(first, v, q)};
-    const std::array<Vec3, 2> after{difference(xyz, v, p), difference(xyz, v, q)};
-    for (std::size_t k = 0; k < 2; ++k) turn.add_edge(before[k], after[k]);
-    turn.add_area(cross(before[0], before[1]), cross(after[0], after[1]));
+  const CornerGeometry geometry(triangles_, first);
+  Vector<Vec3l> face_normals(triangles_.size());
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    const Vec3l n = geometry.triangle_normal(t);
+    for (std::size_t k = 0; k < 3; ++k) face_normals[set_.face_of_triangle[t]][k] += n[k];
   }
-  turn.find();
-  return turn;
+  const FaceView faces{set_.face_of_triangle, face_normals};
+  const ListOfLists<std::uint32_t> sectors =
+      set_.value_of_corner.empty() ? corners_
+                                   : corners_of_sectors(count_, set_.value_of_corner);
+  follows_.assign(count_, 0);
+  for (std::uint32_t x = 0; x < count_; ++x) {
+    if (sectors[x].empty()) continue;
+    const OctahedronPoint point = octahedral_of(
+        sector_normal(geometry, faces, set_.header.weight, sectors[x]), set_.header.value_bits);
+    const std::size_t i = 2 * std::size_t{x};
+    const bool is_predicted = point[0] == set_.values[i] && point[1] == set_.values[i + 1];
+    follows_[x] = is_predicted ? 1 : 0;
+  }
+  for (std::size_t v = 0; v < corners_.size(); ++v) {
+    LocalTurn none;
+    add_surroundings(triangles_, corners_[v], first, first, none);
+    if (none.find()) continue;
+    for (const std::uint32_t c : corners_[v]) follows_[of_corner(c)] = 1;
+  }
 }
 
 template <class Coordinate>
 void FrameNormals::turn_first(std::span<const Coordinate> xyz) {
+  const std::span<const std::int32_t> first = set_.first_positions;
+  const auto is_turned = [&](std::uint32_t c) { return !follows(of_corner(c)); };
   for (std::size_t v = 0; v < corners_.size(); ++v) {
     const std::span<const std::uint32_t> corners = corners_[v];
-    const LocalTurn turn = turn_of(corners, xyz);
+    if (std::none_of(corners.begin(), corners.end(), is_turned)) continue;
+    LocalTurn turn;
+    add_surroundings(triangles_, corners, first, xyz, turn);
+    turn.find();
     for (const std::uint32_t c : corners) {
+      if (!is_turned(c)) continue;
       const std::size_t i = 3 * std::size_t{of_corner(c)};
       const Vec3 normal = turn.turned({first_[i], first_[i + 1], first_[i + 2]});
       std::copy(normal.begin(), normal.end(), &sums_[i]);
@@ -216,11 +238,8 @@ void FrameNormals::turn_first(std::span<const Coordinate> xyz) {
 
 template <class Coordinate>
 void FrameNormals::find_sums(std::span<const Coordinate> xyz) {
-  if (!first_.empty()) {
-    turn_first(xyz);
-  } else if (!faces_.empty()) {
-    add_up(xyz);
-  }
+  if (!faces_.empty()) add_up(xyz);
+  if (!first_.empty()) turn_first(xyz);
 }
 
 std::span<const double> FrameNormals::sums(std::span<const float> xyz) {

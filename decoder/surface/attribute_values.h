@@ -9,7 +9,6 @@
 #include "common/mesh/mesh.h"
 #include "common/mesh/topology.h"
 #include "common/owned.h"
-#include "decoder/surface/local_turn.h"
 
 namespace rlpc {
 
@@ -40,8 +39,8 @@ class FrameNormals {
   // [count()][3], of any length, from the vertices of a frame, in units of the caller or of the
   // grid; valid until the next call, which allocates nothing. Time: in proportion to the
   // corners. Unit vectors of the stream, which are those of the first frame, turn with the
-  // surface around their vertex in others if the set has its positions; without, they are given
-  // as they are.
+  // surface around their vertex in others if the set has its positions, or follow the surface
+  // (F.8.5); without positions, they are given as they are.
   std::span<const double> sums(std::span<const float> xyz);
   std::span<const double> sums(std::span<const std::int32_t> positions);
   // The same, of length 1; (0, 0, 1) where there is none. normals: [count()][3].
@@ -52,9 +51,9 @@ class FrameNormals {
   void add_up(std::span<const Coordinate> xyz);
   void find_terms();
   void keep_first();
-  template <class Coordinate>
-  LocalTurn turn_of(std::span<const std::uint32_t> corners,
-                    std::span<const Coordinate> xyz) const;
+  void find_followers();
+  // Whether a normal is computed from the positions of the frame.
+  bool follows(std::uint32_t normal) const { return follows_.empty() || follows_[normal] != 0; }
   template <class Coordinate>
   void turn_first(std::span<const Coordinate> xyz);
   template <class Coordinate>
@@ -67,8 +66,10 @@ class FrameNormals {
   Vector<std::array<std::uint32_t, 2>> terms_;  // normal, face
   Vector<std::array<double, 3>> faces_;
   Vector<double> sums_;
-  // Of unit vectors that turn: those of the first frame, and the corners around which they do.
+  // Unit vectors of the first frame, which of them follow the surface, and the corners around
+  // which the others turn.
   Vector<float> first_;
+  Vector<std::uint8_t> follows_;
   ListOfLists<std::uint32_t> corners_;  // of each vertex
 };
 

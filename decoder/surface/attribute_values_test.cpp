@@ -88,15 +88,48 @@ TEST(FrameNormals, IntegersAndFloatsOfAFrameGiveTheSame) {
   }
 }
 
-// Where the surface has no axes, in the first frame or in another.
+// Where the surface has no axes in a frame.
 TEST(FrameNormals, WithoutASurfaceThereIsStillANormal) {
-  AttributeSet set = unit_vectors({511, 511, 1022, 511, 700, 400, 511, 900});
+  const AttributeSet set = unit_vectors({511, 511, 1022, 511, 700, 400, 511, 900});
   FrameNormals collapses(set, kSquare, 4);
   const std::vector<float> nothing(12, 5.0F);
   expect_near(normal_at(collapses, nothing, 1), {1.0, 0.0, 0.0});
-  set.first_positions.assign(12, 5);
-  FrameNormals begins_so(set, kSquare, 4);
-  expect_near(normal_at(begins_so, turned(0.5), 1), {1.0, 0.0, 0.0});
+}
+
+// A part that is not there in the first frame: all its vertices at a point, or on a line.
+TEST(FrameNormals, UnitVectorsWithoutAFirstSurfaceFollowLaterOnes) {
+  AttributeSet set = unit_vectors({511, 511, 1022, 511, 700, 400, 511, 900});
+  const double angle = 0.5;
+  for (const Vector<std::int32_t>& first :
+       {Vector<std::int32_t>(12, 5),
+        Vector<std::int32_t>{0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0}}) {
+    set.first_positions = first;
+    FrameNormals normals(set, kSquare, 4);
+    for (std::size_t i = 0; i < 4; ++i) {
+      expect_near(normal_at(normals, turned(angle), i),
+                  {0.0, -std::sin(angle), std::cos(angle)});
+    }
+  }
+}
+
+// The first vertex has the normal that its triangles give it: it follows them where they bend.
+TEST(FrameNormals, UnitVectorsWithoutResidualFollowTheSurface) {
+  const AttributeSet set = unit_vectors({511, 511, 1022, 511, 511, 511, 511, 900});
+  FrameNormals normals(set, kSquare, 4);
+  std::vector<float> bent(kFlat.begin(), kFlat.end());
+  bent[3 * 3 + 2] = 100.0F;  // the fourth vertex goes up, and the second triangle with it
+  const double half = std::numbers::pi / 8;
+  const auto at_first = normal_at(normals, bent, 0);
+  EXPECT_NEAR(std::acos(static_cast<double>(at_first[2])), half, 1e-5);
+  AttributeSet smoothing = set;
+  smoothing.header.kind = ValueKind::kSmoothing;
+  smoothing.header.num_components = 0;
+  smoothing.values.clear();
+  smoothing.first_positions.clear();
+  FrameNormals smooth(smoothing, kSquare, 4);
+  EXPECT_EQ(normal_at(smooth, bent, 0), at_first);
+  EXPECT_EQ(normal_at(smooth, bent, 2), normal_at(normals, bent, 2));
+  EXPECT_GT(normal_at(normals, bent, 1)[0], 0.9F);  // this one turns
 }
 
 TEST(FrameNormals, SmoothingFollowsFromPositions) {

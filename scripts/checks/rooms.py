@@ -37,6 +37,8 @@ ROOMS = {
     "common/attributes/recon": _MESH | {"common/attributes"},
     # Positions in an order of their own (8.18): rest positions, first frames.
     "common/rest": _MESH,
+    # Rotations of the surface of a frame, which players show and encoders expect; floats (F.8.5).
+    "common/surface": {"common", "common/mesh"},
     "common/syntax": _GOFS,
     **dict.fromkeys(_of_kinds("common/{}"), _MESH | {"common/syntax", "common/components", "common/rest"}),
     "common/kernels": {"common", "common/components"},
@@ -70,7 +72,8 @@ ROOMS = {
     "decoder/report": _GOFS | {"decoder/stream", "decoder/output",
                                "common/skinned_gof/recon/model_recon.h"} | _PUBLIC_DECODER,
     # Attributes and vertices as programs draw them.
-    "decoder/surface": {"common", "common/attributes", "common/mesh"},
+    "decoder/surface": {"common", "common/attributes", "common/attributes/recon", "common/mesh",
+                        "common/surface"},
     "decoder/verify": {"common/verify", "decoder/stream"} | _PUBLIC_DECODER,
     "decoder/c_api": {"common/c_api", "common/owned.h", "common/io/clip_time.h",
                       "common/io/float_position.h",
@@ -98,6 +101,7 @@ ROOMS = {
     "encoder/metrics": {"common/mesh", "encoder/math"},
     "encoder/write": _GOFS | {"common/attributes", "encoder/math/det_math.h"},
     "encoder/attributes": _MESH | {"common/attributes", "common/attributes/recon",
+                                   "common/parallel", "common/surface",
                                    "encoder/input/source_attribute.h", "encoder/math",
                                    "encoder/write"},
     "encoder/gof": _ENCODER,
@@ -151,10 +155,11 @@ NEITHER_THROW_NOR_CATCH = {"common", "decoder"}
 MAY_CATCH = {"common/c_api", "common/io", "common/parallel", "common/tools", "decoder/c_api",
              "decoder/tools", "decoder/recon/async.cpp"}
 
-# Folders without floating point, with all folders in them except FILES.
+# Folders without floating point, with all folders in them except FILES and SURFACE.
 INTEGER_FOLDERS = ("common", "decoder/parse", "decoder/recon", "decoder/stream",
                    "decoder/extract")
 FILES = "common/io"
+SURFACE = "common/surface"
 
 _TOOLS = {"CLI", "nlohmann", "zlib.h", "sys"}
 _PEERS = {"draco", "meshoptimizer.h", "zfp.h"}  # other codecs, for comparisons

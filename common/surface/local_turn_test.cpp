@@ -1,4 +1,4 @@
-#include "decoder/surface/local_turn.h"
+#include "common/surface/local_turn.h"
 
 #include <gtest/gtest.h>
 

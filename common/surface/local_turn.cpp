@@ -1,4 +1,4 @@
-#include "decoder/surface/local_turn.h"
+#include "common/surface/local_turn.h"
 
 #include <cmath>
 #include <cstddef>
@@ -29,19 +29,57 @@ Matrix4 horn_matrix(const std::array<Vec3, 3>& s) {
            {z, zx, yz, s[2][2] - s[0][0] - s[1][1]}}};
 }
 
-// Of the matrix without a row and a column, with its sign.
-double cofactor(const Matrix4& m, std::size_t row, std::size_t column) {
-  std::array<Vec3, 3> rest{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      rest[i][j] = m[i + (i >= row ? 1 : 0)][j + (j >= column ? 1 : 0)];
-    }
+// Determinant and adjugate of a symmetric matrix, from the minors of its upper and lower rows.
+class Cofactors {
+ public:
+  explicit Cofactors(const Matrix4& m) : m_(m) {
+    upper_ = minors(m[0], m[1]);
+    lower_ = minors(m[2], m[3]);
   }
-  const double determinant = rest[0][0] * (rest[1][1] * rest[2][2] - rest[1][2] * rest[2][1]) -
-                             rest[0][1] * (rest[1][0] * rest[2][2] - rest[1][2] * rest[2][0]) +
-                             rest[0][2] * (rest[1][0] * rest[2][1] - rest[1][1] * rest[2][0]);
-  return (row + column) % 2 == 0 ? determinant : -determinant;
-}
+
+  double determinant() const {
+    const auto& [s0, s1, s2, s3, s4, s5] = upper_;
+    const auto& [c0, c1, c2, c3, c4, c5] = lower_;
+    return s0 * c5 - s1 * c4 + s2 * c3 + s3 * c2 - s4 * c1 + s5 * c0;
+  }
+
+  Vec4 diagonal() const {
+    const auto& [s0, s1, s2, s3, s4, s5] = upper_;
+    const auto& [c0, c1, c2, c3, c4, c5] = lower_;
+    return {m_[1][1] * c5 - m_[1][2] * c4 + m_[1][3] * c3,
+            m_[0][0] * c5 - m_[0][2] * c2 + m_[0][3] * c1,
+            m_[3][0] * s4 - m_[3][1] * s2 + m_[3][3] * s0,
+            m_[2][0] * s3 - m_[2][1] * s1 + m_[2][2] * s0};
+  }
+
+  Matrix4 adjugate() const {
+    const auto& [s0, s1, s2, s3, s4, s5] = upper_;
+    const auto& [c0, c1, c2, c3, c4, c5] = lower_;
+    Matrix4 a{};
+    const Vec4 on = diagonal();
+    for (std::size_t i = 0; i < 4; ++i) a[i][i] = on[i];
+    a[0][1] = -m_[0][1] * c5 + m_[0][2] * c4 - m_[0][3] * c3;
+    a[0][2] = m_[3][1] * s5 - m_[3][2] * s4 + m_[3][3] * s3;
+    a[0][3] = -m_[2][1] * s5 + m_[2][2] * s4 - m_[2][3] * s3;
+    a[1][2] = -m_[3][0] * s5 + m_[3][2] * s2 - m_[3][3] * s1;
+    a[1][3] = m_[2][0] * s5 - m_[2][2] * s2 + m_[2][3] * s1;
+    a[2][3] = -m_[2][0] * s4 + m_[2][1] * s2 - m_[2][3] * s0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = 0; j < i; ++j) a[i][j] = a[j][i];
+    }
+    return a;
+  }
+
+ private:
+  static std::array<double, 6> minors(const Vec4& a, const Vec4& b) {
+    return {a[0] * b[1] - b[0] * a[1], a[0] * b[2] - b[0] * a[2], a[0] * b[3] - b[0] * a[3],
+            a[1] * b[2] - b[1] * a[2], a[1] * b[3] - b[1] * a[3], a[2] * b[3] - b[2] * a[3]};
+  }
+
+  const Matrix4& m_;
+  std::array<double, 6> upper_{};
+  std::array<double, 6> lower_{};
+};
 
 // The largest root of the characteristic polynomial x^4 + c2 x^2 + c1 x + c0, from a bound of
 // it.
@@ -52,12 +90,10 @@ double largest_eigenvalue(const Matrix4& m, double bound) {
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) c2 -= 0.5 * m[i][j] * m[i][j];
   }
+  const Cofactors cofactors(m);
   double c1 = 0.0;
-  double c0 = 0.0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    c1 -= cofactor(m, i, i);
-    c0 += m[0][i] * cofactor(m, 0, i);
-  }
+  for (const double x : cofactors.diagonal()) c1 -= x;
+  const double c0 = cofactors.determinant();
   double x = bound;
   for (int i = 0; i < kSteps; ++i) {
     const double value = ((x * x + c2) * x + c1) * x + c0;
@@ -88,7 +124,7 @@ void LocalTurn::add_area(const Vec3& before, const Vec3& after) {
   }
 }
 
-void LocalTurn::find() {
+bool LocalTurn::find() {
   const double root_before = std::sqrt(std::sqrt(square_of(area_before_)));
   const double root_after = std::sqrt(std::sqrt(square_of(area_after_)));
   if (root_before > 0.0 && root_after > 0.0) {
@@ -98,7 +134,7 @@ void LocalTurn::find() {
   }
   // By Cauchy and Schwarz; reached where vectors are turned and scaled.
   const double bound = std::sqrt(squares_before_ * squares_after_);
-  if (!(bound > 0.0)) return;
+  if (!(bound > 0.0)) return false;
   for (Vec3& row : products_) {
     for (double& x : row) x /= bound;
   }
@@ -106,13 +142,9 @@ void LocalTurn::find() {
   const double largest = largest_eigenvalue(m, 1.0);
   for (std::size_t i = 0; i < 4; ++i) m[i][i] -= largest;
   // The cofactors are the products of the parts of the quaternion, times their sum of squares.
-  Matrix4 a{};
-  double squares = 0.0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < 4; ++j) a[i][j] = cofactor(m, i, j);
-    squares += a[i][i];
-  }
-  if (!(std::abs(squares) > kUncertain)) return;
+  const Matrix4 a = Cofactors(m).adjugate();
+  const double squares = a[0][0] + a[1][1] + a[2][2] + a[3][3];
+  if (!(std::abs(squares) > kUncertain)) return false;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
     const std::size_t k = (i + 2) % 3;
@@ -120,6 +152,15 @@ void LocalTurn::find() {
     rotation_[i][j] = 2.0 * (a[i + 1][j + 1] - a[0][k + 1]) / squares;
     rotation_[j][i] = 2.0 * (a[i + 1][j + 1] + a[0][k + 1]) / squares;
   }
+  return true;
+}
+
+LocalTurn::Vec3 LocalTurn::turned_back(const Vec3& vector) const {
+  Vec3 sum{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) sum[j] += rotation_[i][j] * vector[i];
+  }
+  return sum;
 }
 
 LocalTurn::Vec3 LocalTurn::turned(const Vec3& vector) const {
