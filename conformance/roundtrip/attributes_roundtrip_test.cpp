@@ -234,8 +234,8 @@ Coded code(Draw& draw, const Mesh& mesh, const SourceAttributes& source,
   result.corner_map = map_corners(result.connectivity, mesh.triangles);
   std::vector<std::int32_t> positions(3 * std::size_t{mesh.num_vertices});
   for (std::int32_t& x : positions) x = draw.residual(12);
-  const EncodedAttributes encoded = encode_attributes(
-      {source, result.connectivity, result.corner_map, positions, positions}, settings);
+  const EncodedAttributes encoded =
+      encode_attributes({source, result.connectivity, result.corner_map, positions}, settings);
   BitReader r(encoded.payload);
   const auto coded =
       parse_attributes(r, mesh.num_vertices, result.connectivity.triangles, kNoLimit);

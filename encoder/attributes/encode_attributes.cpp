@@ -10,8 +10,8 @@
 #include "common/attributes/sectors.h"
 #include "common/bitstream/crc32.h"
 #include "common/mesh/corners.h"
+#include "encoder/attributes/normal_choice.h"
 #include "encoder/attributes/quantise_attribute.h"
-#include "encoder/attributes/shape_normals.h"
 #include "encoder/attributes/smoothing_search.h"
 #include "encoder/math/det_math.h"
 #include "encoder/write/write_attributes.h"
@@ -19,28 +19,8 @@
 namespace rlpc {
 namespace {
 
-using Point = std::array<std::uint32_t, 2>;
-
-constexpr std::uint32_t kSmoothingBits = 10;  // fixed: what smoothing is fitted to
-// fixed: RMS degrees from the normals of the input; at a KG error of 0.1 %, normals of
-// triangles are off by as much (README). Half or twice of it choose the same for the six models
-// with normals: 0.008 (morph-stress), or 3.9 to 7 where skins have bent in the first frame.
-constexpr double kSmoothingServes = 1.0;
 constexpr std::array kWithoutPositions{AttributePrediction::kMean,
                                        AttributePrediction::kParallelogram};
-
-std::vector<Point> octahedron_points(const std::vector<Vec3d>& normals, std::uint32_t bits) {
-  std::vector<Point> points;
-  points.reserve(normals.size());
-  for (const Vec3d& n : normals) points.push_back(octahedron_point(n, bits));
-  return points;
-}
-
-// Positions of the shape at rest, as integers, and triangles with their indices.
-struct RestShape {
-  std::vector<Triangle> triangles;
-  std::vector<std::int32_t> positions;
-};
 
 class AttributeEncoder {
  public:
@@ -75,14 +55,9 @@ class AttributeEncoder {
   CodedAttributeSet code_values(const Draft& draft, AttributeReport& report);
   CodedAttributeSet best_of(const Draft& draft,
                             std::span<const AttributePrediction> predictions) const;
-  template <class NormalAt>
-  void measure_normals(const Draft& draft, const std::vector<Vec3d>& normals,
-                       const NormalAt& at, AttributeReport& report) const;
   CodedAttributeSet code_with(const Draft& draft, AttributePrediction prediction,
                               const FaceView& faces) const;
   std::uint64_t bits_of(const CodedAttributeSet& set) const;
-  std::vector<Vec3d> first_normals(const Draft& draft, const std::vector<Vec3d>& at_rest) const;
-  std::optional<RestShape> rest_shape() const;
   void set_diagonals(const Smoothing& smoothing, CodedAttributeSet& set) const;
 
   const AttributeInput& input_;
@@ -233,7 +208,7 @@ CodedAttributeSet AttributeEncoder::code_with(const Draft& draft,
   set.residuals.assign(std::size_t{n} * draft.sectors.count(), 0);
   for (const std::uint32_t x : order.order) {
     const AttributeValue expected = predictor.predict(x);
-    AttributeValue value = expected;  // of a vertex without value
+    AttributeValue value = expected;  // without a value of its own
     const std::uint32_t i = draft.value_of_sector[x];
     for (std::size_t c = 0; c < n && i != kNoSector; ++c) {
       value[c] = draft.quantised.values[std::size_t{i} * n + c];
@@ -272,61 +247,6 @@ CodedAttributeSet AttributeEncoder::code_values(const Draft& draft, AttributeRep
   return best_of(draft, predictions);
 }
 
-// How far other normals are from those of the input.
-template <class NormalAt>
-void AttributeEncoder::measure_normals(const Draft& draft, const std::vector<Vec3d>& normals,
-                                       const NormalAt& at, AttributeReport& report) const {
-  constexpr double kDegrees = 57.29577951308232;
-  double squares = 0.0;
-  double count = 0.0;
-  report.largest_error = 0.0;
-  for (std::uint32_t x = 0; x < normals.size(); ++x) {
-    const Vec3d n = draft.sectors.corners[x].empty() ? Vec3d{} : at(x);
-    if (dot(n, n) == 0.0 || dot(normals[x], normals[x]) == 0.0) continue;
-    const double angle = kDegrees * angle_between(n, normals[x]);
-    report.largest_error = std::max(report.largest_error, angle);
-    squares += angle * angle;
-    count += 1.0;
-  }
-  report.rms_error = count > 0.0 ? std::sqrt(squares / count) : 0.0;
-}
-
-// Of the sectors, those without corners as they are at rest. Empty: the input does not tell
-// them.
-std::vector<Vec3d> AttributeEncoder::first_normals(const Draft& draft,
-                                                   const std::vector<Vec3d>& at_rest) const {
-  const std::vector<float>& given = input_.source.first_normals;
-  if (given.empty()) return {};
-  std::vector<Vec3d> normals = at_rest;
-  for (std::size_t x = 0; x < normals.size(); ++x) {
-    const std::uint32_t i = draft.value_of_sector[x];
-    if (i == kNoSector) continue;
-    const float* const v = &given[3 * std::size_t{i}];
-    if (v[0] != 0.0F || v[1] != 0.0F || v[2] != 0.0F)
-      normals[x] = normalised({v[0], v[1], v[2]});
-  }
-  return normals;
-}
-
-std::optional<RestShape> AttributeEncoder::rest_shape() const {
-  const SourceAttributes& source = input_.source;
-  if (source.rest_xyz.empty()) return std::nullopt;
-  double largest = 0.0;
-  for (const float x : source.rest_xyz) largest = std::max<double>(largest, std::abs(x));
-  const double scale = largest > 0.0 ? static_cast<double>(1 << 22) / largest : 0.0;
-  RestShape shape;
-  for (const float x : source.rest_xyz) {
-    shape.positions.push_back(static_cast<std::int32_t>(round_to_int(x * scale)));
-  }
-  for (std::size_t t = 0; t < geometry_.triangles().size(); ++t) {
-    Triangle& triangle = shape.triangles.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) {
-      triangle[k] = source.rest_of_corner[corner_map_[3 * t + k]];
-    }
-  }
-  return shape;
-}
-
 // The diagonals of a smoothing, as flags: those that are not likely in the first frame, or all.
 void AttributeEncoder::set_diagonals(const Smoothing& smoothing, CodedAttributeSet& set) const {
   set.header.weight = smoothing.weight;
@@ -352,63 +272,38 @@ void AttributeEncoder::set_diagonals(const Smoothing& smoothing, CodedAttributeS
 }
 
 CodedAttributeSet AttributeEncoder::code_normals(Draft draft, AttributeReport& report) {
+  const std::uint32_t bits = draft.quantised.header.value_bits;
+  NormalPlan plan =
+      plan_normals({input_.source, draft.source.values, geometry_.triangles(), num_vertices_,
+                    corner_map_, edge_mates_, draft.seams, draft.sectors, draft.value_of_sector,
+                    input_.first_frame, input_.later_frames, input_.is_animated, bits},
+                   settings_);
   report.values = draft.sectors.count();
   report.is_normal = true;
-  std::vector<Vec3d> normals;
-  for (const std::uint32_t i : draft.value_of_sector) {
-    const float* const v = i == kNoSector ? nullptr : &draft.source.values[3 * std::size_t{i}];
-    normals.push_back(v == nullptr ? Vec3d{0.0, 0.0, 1.0} : normalised({v[0], v[1], v[2]}));
+  report.is_smoothing = plan.is_smoothing;
+  report.rms_error = plan.rms_error;
+  for (const NormalError& error : plan.errors) {
+    report.largest_error = std::max(report.largest_error, error.largest);
   }
-  const std::vector<Vec3d> of_first = first_normals(draft, normals);
-  const std::optional<RestShape> rest = rest_shape();
-  const CornerGeometry geometry =
-      rest ? CornerGeometry(rest->triangles, rest->positions) : geometry_;
-  const Smoothing smoothing =
-      find_smoothing({geometry, edge_mates_, draft.seams, draft.sectors},
-                     octahedron_points(normals, kSmoothingBits), kSmoothingBits);
-  const ShapeNormals at_rest(geometry, draft.sectors, edge_mates_, draft.seams, smoothing);
-  // Where the input says what becomes of its normals in the first frame, they are compared
-  // there: at rest, those of joints that will bend look better than they are.
-  const CornerGeometry source_frame(geometry_.triangles(), input_.source_frame);
-  const ShapeNormals in_source(source_frame, draft.sectors, edge_mates_, draft.seams,
-                               smoothing);
-  const ShapeNormals& compared = of_first.empty() ? at_rest : in_source;
-  measure_normals(
-      draft, of_first.empty() ? normals : of_first,
-      [&](std::uint32_t x) { return compared.normal(x); }, report);
-  report.is_smoothing = settings_.normals == NormalChoice::kSmoothing ||
-                        (settings_.normals == NormalChoice::kAuto && !settings_.exact &&
-                         report.rms_error <= kSmoothingServes);
+  report.normal_errors = std::move(plan.errors);
+  report.num_following = static_cast<std::uint64_t>(std::ranges::count(plan.follows, true));
   CodedAttributeSet set{
       .header = draft.quantised.header, .seams = {}, .diagonal_flags = {}, .residuals = {}};
   set.seams = draft.seams;
-  set_diagonals(smoothing, set);
+  set_diagonals(plan.smoothing, set);
   if (report.is_smoothing) {
     set.header.kind = ValueKind::kSmoothing;
     set.header.num_components = 0;
     set.header.value_bits = 32;
     return set;
   }
-  if (!of_first.empty()) {
-    normals = of_first;
-  } else if (rest) {
-    const ShapeNormals at_first(geometry_, draft.sectors, edge_mates_, draft.seams, smoothing);
-    for (std::uint32_t x = 0; x < normals.size(); ++x) {
-      if (!draft.sectors.corners[x].empty())
-        normals[x] = turned(normals[x], at_rest, at_first, x);
-    }
-  }
-  const std::uint32_t bits = draft.quantised.header.value_bits;
-  const std::vector<Point> points = octahedron_points(normals, bits);
   draft.quantised.values.clear();
-  for (std::uint32_t x = 0; x < points.size(); ++x) {
-    draft.quantised.values.insert(draft.quantised.values.end(), points[x].begin(),
-                                  points[x].end());
-    draft.value_of_sector[x] = x;
+  for (std::uint32_t x = 0; x < draft.sectors.count(); ++x) {
+    draft.quantised.values.insert(draft.quantised.values.end(), plan.points[x].begin(),
+                                  plan.points[x].end());
+    // What is predicted is what follows.
+    draft.value_of_sector[x] = settings_.from_positions && plan.follows[x] ? kNoSector : x;
   }
-  measure_normals(
-      draft, normals, [&](std::uint32_t x) { return octahedron_vector(points[x], bits); },
-      report);
   if (!settings_.from_positions) return best_of(draft, kWithoutPositions);
   draft.quantised.header = set.header;
   const Faces faces(geometry_, set.header.diagonals, edge_mates_, set.seams, set.diagonal_flags,

@@ -8,6 +8,7 @@
 
 #include "common/attributes/attribute_set.h"
 #include "encoder/attributes/attribute_settings.h"
+#include "encoder/attributes/normal_error.h"
 #include "encoder/input/source_attribute.h"
 #include "encoder/write/write_connectivity.h"
 
@@ -22,6 +23,10 @@ struct AttributeReport {
   double rms_error = 0.0;      // of normals, degrees
   bool is_normal = false;
   bool is_smoothing = false;
+  // Of normals as decoders show them: in the first frame, and in others of which the input has
+  // normals.
+  std::vector<NormalError> normal_errors{};
+  std::uint64_t num_following = 0;  // of the values, normals that follow from positions
 };
 
 struct EncodedAttributes {
@@ -35,8 +40,9 @@ struct AttributeInput {
   std::span<const std::uint32_t> corner_map;  // map_corners()
   // Decoded positions of the first frame, in decoded order.
   std::span<const std::int32_t> first_frame;
-  // The same before coding.
-  std::span<const std::int32_t> source_frame;
+  // Those of SourceAttributes::later_normals that are known.
+  std::span<const DecodedFrame> later_frames{};
+  bool is_animated = true;  // the sequence has several frames
 };
 
 // Each set is coded in the ways that its kind and the settings allow, and the smallest is kept.

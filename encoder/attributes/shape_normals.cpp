@@ -47,29 +47,4 @@ Vec3d ShapeNormals::normal(std::uint32_t x) const {
       {static_cast<double>(sum[0]), static_cast<double>(sum[1]), static_cast<double>(sum[2])});
 }
 
-Vec3d ShapeNormals::tangent(std::uint32_t x) const {
-  const Vec3d n = normal(x);
-  const std::uint32_t c = sectors_.corners[x][0];
-  const Vec3l edge = geometry_.differences<1>(c, {next_corner(c)})[0];
-  Vec3d e{static_cast<double>(edge[0]), static_cast<double>(edge[1]),
-          static_cast<double>(edge[2])};
-  const double along = dot(e, n);
-  for (std::size_t k = 0; k < 3; ++k) e[k] -= along * n[k];
-  return normalised(e);
-}
-
-Vec3d turned(const Vec3d& v, const ShapeNormals& from, const ShapeNormals& to,
-             std::uint32_t x) {
-  const std::array<Vec3d, 2> normals{from.normal(x), to.normal(x)};
-  const std::array<Vec3d, 2> tangents{from.tangent(x), to.tangent(x)};
-  const Vec3d first = cross(normals[0], tangents[0]);
-  const Vec3d second = cross(normals[1], tangents[1]);
-  Vec3d out{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    out[k] = dot(v, normals[0]) * normals[1][k] + dot(v, tangents[0]) * tangents[1][k] +
-             dot(v, first) * second[k];
-  }
-  return dot(out, out) > 0.0 ? normalised(out) : v;
-}
-
 }  // namespace rlpc

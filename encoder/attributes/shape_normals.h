@@ -1,4 +1,4 @@
-// Normals that follow from a shape (F.8), as floats, and vectors that turn with them.
+// Normals that follow from a shape (F.8), as floats.
 #pragma once
 
 #include <array>
@@ -30,9 +30,6 @@ class ShapeNormals {
 
   // Of length 1, or zero.
   Vec3d normal(std::uint32_t x) const;
-  // At a right angle to the normal, along an edge of the sector, which has corners; zero if
-  // there is none.
-  Vec3d tangent(std::uint32_t x) const;
 
  private:
   const CornerGeometry& geometry_;
@@ -40,9 +37,5 @@ class ShapeNormals {
   SmoothingWeight weight_;
   Faces faces_;
 };
-
-// Turns a vector with normal and tangent of a sector, which has corners, from one shape to
-// another.
-Vec3d turned(const Vec3d& v, const ShapeNormals& from, const ShapeNormals& to, std::uint32_t x);
 
 }  // namespace rlpc

@@ -28,6 +28,7 @@ void turn_over(SourceAttributes& attributes) {
 void turn_normals(const Axes& axes, SourceAttributes& attributes) {
   turn(axes, attributes.rest_xyz);
   turn(axes, attributes.first_normals);
+  for (PosedNormals& later : attributes.later_normals) turn(axes, later.normals);
   for (SourceAttribute& set : attributes.sets) {
     if (set.kind == SourceAttribute::Kind::kNormals) turn(axes, set.values);
   }

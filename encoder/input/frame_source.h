@@ -102,6 +102,7 @@ class FrameSource {
  protected:
   explicit FrameSource(Shape shape) : shape_(std::move(shape)) {}
   void set_axes_of_mesh(const std::optional<Axes>& axes) { shape_.axes_of_mesh = axes; }
+  void drop_later_normals() { shape_.attributes.later_normals.clear(); }
   void add_note(std::string note) { shape_.notes.push_back(std::move(note)); }
 
  private:

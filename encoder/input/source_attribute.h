@@ -38,6 +38,12 @@ struct UvUse {
   double scale = 1.0;
 };
 
+// Normals of a frame, as first_normals below.
+struct PosedNormals {
+  std::uint32_t frame = 0;
+  std::vector<float> normals;
+};
+
 struct SourceAttributes {
   std::vector<SourceAttribute> sets;
   // The shape to which `normal` belongs, if that is not the first frame: positions, and for
@@ -47,12 +53,16 @@ struct SourceAttributes {
   // [value of normal][3], those of the first frame, of length 1 or zero, if they are not those
   // of the values and the input says what moves them; otherwise empty.
   std::vector<float> first_normals{};
+  // The same of some later frames, ascending, in which the ways to code normals are compared:
+  // each part of the mesh is there in the first or in one of these, if it is in any frame.
+  std::vector<PosedNormals> later_normals{};
 
   std::uint64_t memory_bytes() const {
     const auto bytes = [](const auto& all) {
       return std::uint64_t{all.capacity()} * sizeof(all[0]);
     };
     std::uint64_t sum = bytes(rest_xyz) + bytes(rest_of_corner) + bytes(first_normals);
+    for (const PosedNormals& later : later_normals) sum += bytes(later.normals);
     for (const SourceAttribute& set : sets)
       sum += bytes(set.values) + bytes(set.value_of_corner);
     return sum;

@@ -9,18 +9,29 @@ namespace rlpc {
 AttributeStage::AttributeStage(const SourceAttributes& source,
                                std::span<const Triangle> triangles,
                                const EncoderSettings& settings,
-                               const ConnectivityCode& connectivity)
-    : source_(source), settings_(settings.attributes), connectivity_(connectivity) {
+                               const ConnectivityCode& connectivity, bool is_animated)
+    : source_(source),
+      settings_(settings.attributes),
+      connectivity_(connectivity),
+      is_animated_(is_animated) {
   // Cuts to fewer components or layers change the first frame.
   settings_.from_positions = settings_.from_positions && !settings.has_detail_layers();
   if (has_sets()) corner_map_ = map_corners(connectivity, triangles);
 }
 
-void AttributeStage::encode(std::span<const std::int32_t> first_frame, StreamAssembly& stream) {
+std::vector<std::uint32_t> AttributeStage::frames() const {
+  if (!has_sets()) return {};
+  std::vector<std::uint32_t> frames{0};
+  for (const PosedNormals& later : source_.later_normals) frames.push_back(later.frame);
+  return frames;
+}
+
+void AttributeStage::encode(std::span<const DecodedFrame> decoded, StreamAssembly& stream) {
   if (!has_sets()) return;
-  const auto source_frame = source_frame_.empty() ? first_frame : std::span(source_frame_);
-  EncodedAttributes encoded = encode_attributes(
-      {source_, connectivity_, corner_map_, first_frame, source_frame}, settings_);
+  EncodedAttributes encoded =
+      encode_attributes({source_, connectivity_, corner_map_, decoded[0].positions,
+                         decoded.subspan(1), is_animated_},
+                        settings_);
   reports_ = std::move(encoded.sets);
   stream.set_attributes(encoded.payload);
 }

@@ -14,19 +14,18 @@ namespace rlpc {
 
 class AttributeStage {
  public:
-  // triangles: of the source. Keeps references to source and connectivity.
+  // triangles: of the source. is_animated: the sequence has, or may have, several frames. Keeps
+  // references to source and connectivity.
   AttributeStage(const SourceAttributes& source, std::span<const Triangle> triangles,
-                 const EncoderSettings& settings, const ConnectivityCode& connectivity);
+                 const EncoderSettings& settings, const ConnectivityCode& connectivity,
+                 bool is_animated = true);
 
   bool has_sets() const { return !source_.sets.empty() && !settings_.dropped; }
-  // Positions of the first frame of the source, nearest on the grid, in decoded order: what the
-  // ways to code normals are judged by. Before encode(), or those of encode() count.
-  void set_source_frame(std::vector<std::int32_t> positions) {
-    source_frame_ = std::move(positions);
-  }
-  // Replaces the attribute unit of the stream. first_frame: positions on the grid, in decoded
-  // order; to be called again if they have changed.
-  void encode(std::span<const std::int32_t> first_frame, StreamAssembly& stream);
+  // The frames that encode() uses, ascending; none without sets.
+  std::vector<std::uint32_t> frames() const;
+  // Replaces the attribute unit of the stream. decoded: the first frame, and perhaps others of
+  // frames(); to be called again if they have changed.
+  void encode(std::span<const DecodedFrame> decoded, StreamAssembly& stream);
   // Of the last call.
   const std::vector<AttributeReport>& reports() const { return reports_; }
 
@@ -35,7 +34,7 @@ class AttributeStage {
   AttributeSettings settings_;
   const ConnectivityCode& connectivity_;
   std::vector<std::uint32_t> corner_map_;
-  std::vector<std::int32_t> source_frame_;
+  bool is_animated_;
   std::vector<AttributeReport> reports_;
 };
 

@@ -30,7 +30,10 @@ class StretchSource final : public FrameSource {
                      source.materials(),
                      source.memory_bytes()}),
         source_(source),
-        stretch_(stretch) {}
+        stretch_(stretch) {
+    // Frames have other numbers here.
+    drop_later_normals();
+  }
 
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
     return source_.read_frame(frame_of(frame), xyz);

@@ -150,14 +150,17 @@ InputResult<GofBatch::MeasuredGof> GofBatch::measure(Gof& gof, const EncodedGof&
   for (std::size_t g = 0; g < gofs.size(); ++g) {
     if (!gofs[g].has_own_hashes) gofs[g].hash_unit = std::move((*hash_units)[g]);
   }
-  std::vector<std::int32_t> first;
-  if (options_.keep_first_frame && options_.first_frame + gof.span.first == 0) {
-    first.resize(3 * std::size_t{coding_.header().num_vertices});
-    encoded.frame(0, first);
+  std::vector<DecodedFrame> kept;
+  const std::uint32_t first = options_.first_frame + gof.span.first;
+  for (const std::uint32_t frame : options_.kept_frames) {
+    if (frame < first || frame - first >= gof.span.count) continue;
+    kept.push_back({frame, {}});
+    kept.back().positions.resize(3 * std::size_t{coding_.header().num_vertices});
+    encoded.frame(frame - first, kept.back().positions);
   }
   return MeasuredGof{{std::move(gofs), LevelNeeds(encoded), encoded.clusters,
                       encoded.components, options_.keep_decoded ? encoded.frame : nullptr,
-                      encoded.model, encoded.cut, encoded.choices, std::move(first)},
+                      encoded.model, encoded.cut, encoded.choices, std::move(kept)},
                      std::move(metrics)};
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "encoder/attributes/normal_error.h"
 #include "encoder/gof/gof_coder.h"
 #include "encoder/metrics/metrics.h"
 #include "encoder/sequence/choices/gof_cuts.h"
@@ -29,8 +30,8 @@ struct CodedGof {
   std::shared_ptr<const KeptModel> model;
   DecodeCut cut;                     // of GOFs with one temporal layer: empty
   std::vector<FrameChoice> choices;  // of each GOF of frames
-  // Of frame 0 of the sequence, if Options::keep_first_frame, in decoded order.
-  std::vector<std::int32_t> first_positions{};
+  // Frames of the sequence that Options::kept_frames lists, ascending.
+  std::vector<DecodedFrame> kept{};
 };
 
 // Adds what was chosen for GOFs to what was counted before.
@@ -49,7 +50,7 @@ class GofBatch {
     std::uint32_t first_frame = 0;  // position in the stream of frame 0 of the source
     bool keep_analyses = true;      // from one encode() to the next; choices are always kept
     bool keep_decoded = false;      // set CodedGof::frame and model
-    bool keep_first_frame = false;  // set CodedGof::first_positions
+    std::vector<std::uint32_t> kept_frames{};  // of the stream, ascending: CodedGof::kept
     // The skinned model in force before the batch; null: none.
     std::shared_ptr<const KeptModel> model = nullptr;
     bool has_followers = false;  // further batches may use the model in force after it

@@ -48,8 +48,8 @@ std::optional<InputError> LowDelayEncoder::prepare() {
   coding_.emplace(header, settings_, format_.triangles);
   // They are written before the first frame is coded.
   settings_.attributes.from_positions = false;
-  attributes_.emplace(format_.attributes, format_.triangles, settings_,
-                      coding_->connectivity());
+  attributes_.emplace(format_.attributes, format_.triangles, settings_, coding_->connectivity(),
+                      header.num_frames != 1);
   meshes_.emplace(coding_->mesh().topology, coding_->mesh().triangles, true);
   format_.triangles = {};
   return std::nullopt;
@@ -65,9 +65,9 @@ std::optional<InputError> LowDelayEncoder::begin_stream(std::span<const float> x
   set_grid_of_box(header, format_, target, finest_error(target, measured->rms_spread));
   coding_->set_header(header);
   stream_.emplace(header, settings_, coding_->connectivity());
-  const auto first_frame = coding_->nearest_first_frame(frame);
-  if (!first_frame) return first_frame.error();
-  attributes_->encode(*first_frame, *stream_);
+  const auto frames = coding_->nearest_frames(frame, std::vector<std::uint32_t>{0});
+  if (!frames) return frames.error();
+  attributes_->encode(*frames, *stream_);
   stream_->write_lead(header, keep_);
   return std::nullopt;
 }

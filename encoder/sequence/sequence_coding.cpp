@@ -163,16 +163,20 @@ InputResult<GofFrames> SequenceCoding::read_frames(FrameSource& source,
   return frames;
 }
 
-InputResult<std::vector<std::int32_t>> SequenceCoding::nearest_first_frame(
-    FrameSource& source) const {
-  const auto frames = read_frames(source, {0, 1});
-  if (!frames) return frames.error();
-  std::vector<std::int32_t> positions;
-  for (std::uint32_t v = 0; v < header_.num_vertices; ++v) {
-    const Vec3i p = nearest_position(frames->at(0, v), header_.position_bits);
-    positions.insert(positions.end(), p.begin(), p.end());
+InputResult<std::vector<DecodedFrame>> SequenceCoding::nearest_frames(
+    FrameSource& source, std::span<const std::uint32_t> numbers) const {
+  std::vector<DecodedFrame> nearest;
+  for (const std::uint32_t number : numbers) {
+    const auto frames = read_frames(source, {number, 1});
+    if (!frames) return frames.error();
+    std::vector<std::int32_t>& positions =
+        nearest.emplace_back(DecodedFrame{number, {}}).positions;
+    for (std::uint32_t v = 0; v < header_.num_vertices; ++v) {
+      const Vec3i p = nearest_position(frames->at(0, v), header_.position_bits);
+      positions.insert(positions.end(), p.begin(), p.end());
+    }
   }
-  return positions;
+  return nearest;
 }
 
 std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames,

@@ -11,6 +11,7 @@
 #include "common/mesh/topology.h"
 #include "common/syntax/sequence_header.h"
 #include "common/syntax/write_units.h"
+#include "encoder/attributes/normal_error.h"
 #include "encoder/gof/gof_coder.h"
 #include "encoder/gof/gof_kind.h"
 #include "encoder/gof/sequence_mesh.h"
@@ -74,8 +75,9 @@ class SequenceCoding {
   // made before.
   void set_header(const SequenceHeader& header) { header_ = header; }
 
-  // Frame 0 of the source, as positions on the grid in decoded order.
-  InputResult<std::vector<std::int32_t>> nearest_first_frame(FrameSource& source) const;
+  // Frames of the source, as positions on the grid in decoded order.
+  InputResult<std::vector<DecodedFrame>> nearest_frames(
+      FrameSource& source, std::span<const std::uint32_t> numbers) const;
   // The frames of a span, in decoded vertex order and grid units; span: frames of the source.
   // Errors: those of the source.
   InputResult<GofFrames> read_frames(FrameSource& source, const GofSpan& span) const;

@@ -1,5 +1,6 @@
 // Implements encode() of encoder/rlpc_encoder.h: encodes a whole sequence to its target.
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -43,6 +44,15 @@ std::uint32_t spans_together(const SequenceHeader& header, std::uint32_t longest
   const std::uint64_t most =
       kPositionsTogether / (std::uint64_t{header.num_vertices} * longest);
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, num_threads));
+}
+
+// The decoded frames that attributes refer to.
+std::vector<DecodedFrame> kept_frames(const BatchTrial& trial) {
+  std::vector<DecodedFrame> frames;
+  for (const CodedGof& span : trial.gofs) {
+    frames.insert(frames.end(), span.kept.begin(), span.kept.end());
+  }
+  return frames;
 }
 
 class SequenceEncoder {
@@ -107,13 +117,14 @@ std::optional<InputError> SequenceEncoder::prepare() {
   coding_.emplace(header, settings_, source_.triangles());
   stream_.emplace(header, settings_, coding_->connectivity());
   attributes_.emplace(source_.attributes(), source_.triangles(), settings_,
-                      coding_->connectivity());
+                      coding_->connectivity(), header.num_frames > 1);
   if (attributes_->has_sets()) {
-    auto first_frame = coding_->nearest_first_frame(source_);
-    if (!first_frame) return first_frame.error();
-    attributes_->set_source_frame(*first_frame);
     // Their size is part of the rate; it hardly depends on the error of the first frame.
-    if (settings_.target.kind == Target::kBpvf) attributes_->encode(*first_frame, *stream_);
+    if (settings_.target.kind == Target::kBpvf) {
+      auto frames = coding_->nearest_frames(source_, attributes_->frames());
+      if (!frames) return frames.error();
+      attributes_->encode(*frames, *stream_);
+    }
   }
   return std::nullopt;
 }
@@ -189,7 +200,7 @@ InputResult<TargetResult> SequenceEncoder::search() {
   const SequenceHeader& header = coding_->header();
   GofBatch batch(*coding_, source_, spans_,
                  {.keep_analyses = keeps_analyses_,
-                  .keep_first_frame = attributes_->has_sets(),
+                  .kept_frames = attributes_->frames(),
                   .together = spans_together(header, longest_gof_of(spans_), num_threads_)});
   const auto progress = [&](std::uint32_t trial, double done) { show_progress(trial, done); };
   auto best = reach_target({.settings = settings_,
@@ -221,7 +232,7 @@ double SequenceEncoder::fixed_bits() const {
 }
 
 std::uint64_t SequenceEncoder::total_bytes(const TargetResult& result) {
-  attributes_->encode(result.trial.gofs.front().first_positions, *stream_);
+  attributes_->encode(kept_frames(result.trial), *stream_);
   const ByteSink discard = [](std::span<const std::uint8_t>) { return true; };
   StreamAssembly stream = *stream_;
   stream.write_lead(coding_->header(), discard);
@@ -287,7 +298,7 @@ InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSi
     report.components += gof.components;
     count_patterns(gof.choices, report.patterns);
   }
-  attributes_->encode(best.trial.gofs.front().first_positions, *stream_);
+  attributes_->encode(kept_frames(best.trial), *stream_);
   report.attributes = attributes_->reports();
   // Bytes leave once the whole stream has been verified.
   const auto stream = std::make_shared<StreamBuffer>(StreamBuffer::Keep::kAll);

@@ -54,8 +54,8 @@ std::optional<InputError> SpanEncoder::prepare() {
   coded_.cuts.assign(settings_.temporal_layers() - 1,
                      MetricsAccumulator(header.num_vertices, MetricsAccumulator::kTotals));
   coding_.emplace(header, settings_, format_.triangles);
-  attributes_.emplace(format_.attributes, format_.triangles, settings_,
-                      coding_->connectivity());
+  attributes_.emplace(format_.attributes, format_.triangles, settings_, coding_->connectivity(),
+                      header.num_frames != 1);
   format_.triangles = {};
   return std::nullopt;
 }
@@ -115,7 +115,7 @@ InputResult<TargetResult> SpanEncoder::search(const GofSpan& span, double rms_sp
   GofBatch batch(*coding_, *buffer_, {{0, span.count, span.num_gofs}},
                  {.first_frame = span.first,
                   .keep_decoded = true,
-                  .keep_first_frame = attributes_->has_sets(),
+                  .kept_frames = attributes_->frames(),
                   .model = model_,
                   .has_followers = is_open_ended() || coded_.spans + 1 < spans_.size(),
                   .metrics = MetricsAccumulator::kTotals});
@@ -136,9 +136,11 @@ InputResult<TargetResult> SpanEncoder::search_first(const GofSpan& span, double 
   use_header(header_for(finest_error(settings_.target, rms_spread)));
   if (attributes_->has_sets() && settings_.target.kind == Target::kBpvf) {
     // Their size is part of the rate.
-    const auto first_frame = coding_->nearest_first_frame(*buffer_);
-    if (!first_frame) return first_frame.error();
-    attributes_->encode(*first_frame, *stream_);
+    std::vector<std::uint32_t> held = attributes_->frames();
+    std::erase_if(held, [&](std::uint32_t frame) { return frame >= span.count; });
+    const auto frames = coding_->nearest_frames(*buffer_, held);
+    if (!frames) return frames.error();
+    attributes_->encode(*frames, *stream_);
   }
   auto best = search(span, rms_spread);
   if (!best || settings_.target.kind != Target::kBpvf) return best;
@@ -203,7 +205,7 @@ std::optional<InputError> SpanEncoder::encode_span() {
 std::optional<InputError> SpanEncoder::write(const CodedGof& span) {
   const ByteSink keep = out_.collector();
   if (coded_.spans == 0) {
-    attributes_->encode(span.first_positions, *stream_);
+    attributes_->encode(span.kept, *stream_);
     stream_->write_lead(coding_->header(), keep);
   }
   bool is_first = coded_.spans == 0;

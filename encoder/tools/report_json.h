@@ -91,6 +91,13 @@ inline nlohmann::ordered_json report_json(const EncodeReport& r) {
     if (a.is_normal) {
       set["rms_error_degrees"] = a.rms_error;
       set["smoothing"] = a.is_smoothing;
+      set["following"] = a.num_following;
+      for (const NormalError& error : a.normal_errors) {
+        set["normal_errors"].push_back({{"frame", error.frame},
+                                        {"mean_degrees", error.mean},
+                                        {"rms_degrees", error.rms},
+                                        {"largest_degrees", error.largest}});
+      }
     }
     json["attributes"].push_back(std::move(set));
   }

@@ -34,6 +34,7 @@
 #include "encoder/sequence/target/quality.h"
 #include "encoder/tools/encode_options.h"
 #include "encoder/tools/low_delay.h"
+#include "encoder/tools/normal_report.h"
 #include "encoder/tools/report_json.h"
 
 namespace rlpc {
@@ -57,8 +58,7 @@ void print_attributes(const EncodeReport& r) {
     std::printf("  %s: %llu bytes", a.name.c_str(),
                 static_cast<unsigned long long>((a.bits + 7) / 8));
     if (a.is_normal) {
-      std::printf(", %s, largest error %.3g degrees",
-                  a.is_smoothing ? "smoothing" : "unit vectors", a.largest_error);
+      std::printf(", %s", normal_text(a).c_str());
     } else if (a.largest_error > 0.0) {
       std::printf(", largest error %.3g", a.largest_error);
     }
@@ -255,6 +255,10 @@ int tell(const EncodeOptions& o, FrameSource& source, const Expectation& e) {
     print_report(o, e);
   }
   if (*visibility) warn_if_visible(o, e.report, **visibility);
+  for (const AttributeReport& a : e.report.attributes) {
+    const auto warning = a.is_normal ? normal_warning(a) : std::nullopt;
+    if (warning && !o.quiet) complain(*warning);
+  }
   return report_target(o, e.report);
 }
 

@@ -43,8 +43,12 @@ GltfVec3 face_normal(const std::array<GltfVec3, 3>& corner) {
 class AttributeCollector {
  public:
   AttributeCollector(const GltfModel& model, std::span<const Triangle> triangles,
-                     const std::vector<bool>& is_mirrored, const GltfPose& first)
-      : model_(model), triangles_(triangles), is_mirrored_(is_mirrored), first_(first) {}
+                     const GltfPose& first, const SampledPoses& sampled)
+      : model_(model),
+        triangles_(triangles),
+        is_mirrored_(sampled.is_mirrored),
+        first_(first),
+        sampled_(sampled) {}
 
   SourceAttributes collect() {
     SourceAttributes all;
@@ -190,26 +194,36 @@ class AttributeCollector {
     for (const Triangle& t : triangles_) {
       all.rest_of_corner.insert(all.rest_of_corner.end(), t.begin(), t.end());
     }
-    all.first_normals = posed_normals(model_, first_);
-    PosedModel posed(model_, first_);
+    all.first_normals = all_normals(first_);
+    for (const SampledPoses::Later& later : sampled_.later) {
+      all.later_normals.push_back({later.frame, all_normals(later.pose)});
+    }
+  }
+
+  // Of vertices, then of the triangles of flat instances.
+  std::vector<float> all_normals(const GltfPose& pose) const {
+    std::vector<float> normals = posed_normals(model_, pose);
+    PosedModel posed(model_, pose);
     for_flat_instances([&](std::size_t i, std::size_t first) {
       std::vector<float> xyz(geometry_of(model_.instances[i]).base.size());
       posed.positions(model_.instances[i], xyz);
-      append_face_normals(i, first, xyz, all.first_normals);
+      append_face_normals(i, first, xyz, normals);
     });
+    return normals;
   }
 
   const GltfModel& model_;
   std::span<const Triangle> triangles_;
   const std::vector<bool>& is_mirrored_;
   const GltfPose& first_;
+  const SampledPoses& sampled_;
 };
 
 }  // namespace
 
 SourceAttributes gltf_attributes(const GltfModel& model, std::span<const Triangle> triangles,
-                                 const std::vector<bool>& is_mirrored, const GltfPose& first) {
-  return AttributeCollector(model, triangles, is_mirrored, first).collect();
+                                 const GltfPose& first, const SampledPoses& sampled) {
+  return AttributeCollector(model, triangles, first, sampled).collect();
 }
 
 }  // namespace rlpc

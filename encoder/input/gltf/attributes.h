@@ -2,14 +2,16 @@
 #pragma once
 
 #include "encoder/input/gltf/model_pose.h"
+#include "encoder/input/gltf/sampled_poses.h"
 #include "encoder/input/source_attribute.h"
 
 namespace rlpc {
 
 // triangles: of the scene, as in FrameSource::Shape before welding, in the order of instances,
 // those of mirrored instances turned. Sets that only some primitives have get usual values
-// elsewhere, normals those of the faces. first: the pose of the first frame.
+// elsewhere, normals those of the faces. first: the pose of the first frame; sampled: of
+// others.
 SourceAttributes gltf_attributes(const GltfModel& model, std::span<const Triangle> triangles,
-                                 const std::vector<bool>& is_mirrored, const GltfPose& first);
+                                 const GltfPose& first, const SampledPoses& sampled);
 
 }  // namespace rlpc

@@ -42,16 +42,26 @@ InputResult<std::vector<std::uint32_t>> first_frames(const GltfModel& model,
   return first;
 }
 
-// Mirroring nodes flip triangles, so that they keep facing the same side (glTF 2.0, 3.7.2.1);
-// those of skinned meshes, too, although joints alone place their vertices.
-std::vector<bool> mirrored_instances(const GltfModel& model, const GltfPose& pose) {
-  std::vector<bool> is_mirrored;
-  for (const GltfModel::Instance& instance : model.instances) {
-    is_mirrored.push_back(determinant(pose.to_scene[instance.node]) < 0);
-  }
-  return is_mirrored;
+GltfPose pose_at(const GltfModel& model, const std::vector<std::uint32_t>& first_frame,
+                 const GltfFrameGrid& grid, std::uint32_t frame) {
+  const auto next = std::upper_bound(first_frame.begin(), first_frame.end(), frame);
+  const auto number = static_cast<std::size_t>(next - first_frame.begin()) - 1;
+  const GltfClip* const clip = model.clips.empty() ? nullptr : &model.clips[number];
+  const double time = clip ? grid.time_of(frame - first_frame[number], *clip) : 0.0;
+  return pose_of(model.nodes, model.scene, clip, time);
 }
 
+// Normals of so many frames are compared, or of fewer of large models.
+std::size_t frames_with_normals(const GltfModel& model, std::uint64_t max_memory_bytes) {
+  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 27;  // fixed: memory
+  constexpr std::uint64_t kPart = 64;                           // fixed: of the limit
+  constexpr std::uint64_t kMost = 15;                           // fixed: time
+  const std::uint64_t bytes = std::min(kMostBytes, max_memory_bytes / kPart);
+  return std::clamp<std::uint64_t>(bytes / (3 * sizeof(float) * model.num_vertices), 2, kMost);
+}
+
+// Mirroring nodes flip triangles, so that they keep facing the same side (glTF 2.0, 3.7.2.1);
+// those of skinned meshes, too, although joints alone place their vertices.
 std::vector<Triangle> triangles_of(const GltfModel& model,
                                    const std::vector<bool>& is_mirrored) {
   std::vector<Triangle> triangles;
@@ -130,11 +140,7 @@ class GltfSource : public FrameSource {
   template <class T>
   void read(std::uint32_t frame, std::span<T> xyz) const {
     assert(frame < num_frames() && xyz.size() == 3 * std::size_t{num_vertices()});
-    const auto next = std::upper_bound(first_frame_.begin(), first_frame_.end(), frame);
-    const auto number = static_cast<std::size_t>(next - first_frame_.begin()) - 1;
-    const GltfClip* const clip = model_.clips.empty() ? nullptr : &model_.clips[number];
-    const double time = clip ? grid_.time_of(frame - first_frame_[number], *clip) : 0.0;
-    const GltfPose pose = pose_of(model_.nodes, model_.scene, clip, time);
+    const GltfPose pose = pose_at(model_, first_frame_, grid_, frame);
     PosedModel posed(model_, pose);
     for (const GltfModel::Instance& instance : model_.instances) {
       const GltfGeometry& geometry = model_.geometries[instance.geometry];
@@ -166,17 +172,27 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   if (!first_frame) return first_frame.error();
   shape.num_vertices = static_cast<std::uint32_t>(model->num_vertices);
   shape.num_frames = first_frame->back();
-  const GltfClip* const clip = model->clips.empty() ? nullptr : &model->clips[0];
-  const GltfPose first = pose_of(model->nodes, model->scene, clip, 0.0);
-  const std::vector<bool> is_mirrored = mirrored_instances(*model, first);
-  shape.triangles = triangles_of(*model, is_mirrored);
+  const auto pose = [&](std::uint32_t frame) {
+    return pose_at(*model, *first_frame, grid, frame);
+  };
+  const SampledPoses sampled = sample_poses(
+      *model, shape.num_frames, frames_with_normals(*model, options.max_memory_bytes), pose);
+  shape.triangles = triangles_of(*model, sampled.is_mirrored);
   shape.notes = model->notes;
   add_notes_of_time(*model, grid, shape.notes);
+  if (const std::size_t count = sampled.num_turning_over) {
+    shape.notes.push_back(to_string(count) + " primitive" + (count == 1 ? "" : "s") +
+                          " mirrored by scales of nodes in some frames, not in others: there, "
+                          "triangles show their back");
+  }
   shape.asset = std::move(model->asset);
-  shape.attributes = gltf_attributes(*model, shape.triangles, is_mirrored, first);
+  shape.attributes = gltf_attributes(*model, shape.triangles, pose(0), sampled);
   shape.files = model->files;
   shape.clips = clips_of(*model, *first_frame);
   shape.memory_bytes = model->memory_bytes;
+  // With decoded positions of these frames.
+  for (const PosedNormals& later : shape.attributes.later_normals)
+    shape.memory_bytes += 4 * sizeof(float) * later.normals.size();
   if (!options.weld) drop_degenerate(shape);
   std::unique_ptr<FrameSource> source = std::make_unique<GltfSource>(
       std::move(shape), name, std::move(*model), grid, std::move(*first_frame));
