@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "encoder/input/glb_asset.h"
+#include "encoder/input/gltf/equal_uv.h"
 
 namespace rlpc {
 namespace {
@@ -58,6 +59,9 @@ class AssetMaker {
       if (out_.contains("images")) add_images();
       check_textures();
     }
+    use_first_uv(model_.equal_uv, out_["materials"]);
+    // For writers of glTF, which restore them.
+    if (!model_.equal_uv.empty()) out_["extras"]["equal_uv"] = model_.equal_uv;
     add_parts();
     GltfAsset asset;
     if (!out_.empty()) asset.glb = glb();

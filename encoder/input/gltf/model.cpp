@@ -6,7 +6,9 @@
 #include <span>
 #include <utility>
 
+#include "encoder/input/glb_asset.h"
 #include "encoder/input/gltf/asset.h"
+#include "encoder/input/gltf/equal_uv.h"
 #include "encoder/input/gltf/losses.h"
 
 namespace rlpc {
@@ -17,9 +19,11 @@ using std::to_string;
 
 class ModelReader {
  public:
-  ModelReader(GltfDocument document, GltfFile& file, const GltfLimits& limits,
-              GltfMemory& memory, GltfErrors& errors)
+  // relief: of relief_of_materials().
+  ModelReader(GltfDocument document, std::vector<std::optional<std::size_t>> relief,
+              GltfFile& file, const GltfLimits& limits, GltfMemory& memory, GltfErrors& errors)
       : document_(std::move(document)),
+        relief_(std::move(relief)),
         limits_(limits),
         memory_(memory),
         errors_(errors),
@@ -49,6 +53,12 @@ class ModelReader {
     for (const std::uint32_t node : model_.scene.with_mesh) add_mesh(node);
     if (model_.instances.empty()) errors_.add("scenes", what_is_missing());
     note(num_without_triangles_, "point or line primitive");
+    model_.equal_uv = drop_equal_uv(model_.geometries);
+    if (!model_.equal_uv.empty()) model_.notes.push_back(equal_uv_note(model_.equal_uv));
+    TangentCount tangents;
+    for (const GltfGeometry& geometry : model_.geometries) tangents.add(geometry.tangents);
+    if (std::string text = tangent_note(tangents); !text.empty())
+      model_.notes.push_back(std::move(text));
     for (GltfMesh& mesh : document_.meshes) model_.weights.push_back(std::move(mesh.weights));
     model_.nodes = std::move(document_.nodes);
     model_.num_materials = document_.num_materials;
@@ -161,12 +171,15 @@ class ModelReader {
         geometries_.try_emplace({&primitive, skin}, model_.geometries.size());
     if (is_new) {
       const std::size_t num_joints = skin ? model_.skins[*skin].joints.size() : 0;
-      model_.geometries.push_back(read_gltf_geometry(primitive, num_joints, values_, errors_));
+      const auto relief_uv = primitive.material ? relief_[*primitive.material] : std::nullopt;
+      model_.geometries.push_back(
+          read_gltf_geometry(primitive, num_joints, relief_uv, values_, errors_));
     }
     return known->second;
   }
 
   GltfDocument document_;
+  std::vector<std::optional<std::size_t>> relief_;  // [material]
   const GltfLimits& limits_;
   GltfMemory& memory_;
   GltfErrors& errors_;
@@ -178,6 +191,26 @@ class ModelReader {
   std::uint64_t num_triangles_ = 0;
   std::uint64_t num_without_triangles_ = 0;
 };
+
+// The number of the texture coordinates of the normal map of each material; none: it has no
+// such map. Materials may be anything here: their readers check them.
+std::vector<std::optional<std::size_t>> relief_of_materials(const nlohmann::json& root,
+                                                            std::size_t num_materials) {
+  std::vector<std::optional<std::size_t>> relief(num_materials);
+  for (std::size_t m = 0; m < num_materials; ++m) {
+    const nlohmann::json& material = root["materials"][m];
+    const auto map = material.find("normalTexture");
+    if (!material.is_object() || map == material.end()) continue;
+    constexpr std::size_t kMostSets = 256;
+    relief[m] = index_of(*map, "texCoord", kMostSets).value_or(0);
+    if (!map->is_object() || !map->contains("extensions")) continue;
+    const nlohmann::json& extensions = (*map)["extensions"];
+    if (!extensions.is_object() || !extensions.contains("KHR_texture_transform")) continue;
+    const auto other = index_of(extensions["KHR_texture_transform"], "texCoord", kMostSets);
+    if (other) relief[m] = *other;
+  }
+  return relief;
+}
 
 // Extras may be anything: nothing in them is an error.
 std::optional<FrameRate> frame_rate_of(const nlohmann::json& root) {
@@ -204,8 +237,10 @@ InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLi
   GltfDocument document = read_gltf_document(GltfValue(*file->json, errors), errors);
   if (errors) return errors.first();
   const auto frame_rate = frame_rate_of(*file->json);
+  auto relief = relief_of_materials(*file->json, document.num_materials);
   GltfModel model =
-      ModelReader(std::move(document), *file, limits, memory, errors).read(options.animations);
+      ModelReader(std::move(document), std::move(relief), *file, limits, memory, errors)
+          .read(options.animations);
   if (errors) return errors.first();
   for (std::string& loss : gltf_losses(*file->json, model)) {
     model.dropped.push_back(std::move(loss));

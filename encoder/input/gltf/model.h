@@ -49,6 +49,7 @@ struct GltfModel {
   std::vector<Instance> instances;
   std::uint64_t num_vertices = 0;
   std::size_t num_materials = 0;
+  std::vector<std::size_t> equal_uv;    // EqualUv
   std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate, "N/D", as rlpcdec writes it
   std::vector<std::string> notes;       // see FrameSource
   std::vector<std::string> dropped;     // contents that are not read: "cameras"

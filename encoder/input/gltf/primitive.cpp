@@ -18,7 +18,7 @@ class GeometryReader {
   GeometryReader(const GltfPrimitive& primitive, GltfValues& values, GltfErrors& errors)
       : primitive_(primitive), values_(values), errors_(errors) {}
 
-  GltfGeometry read(std::size_t num_joints) {
+  GltfGeometry read(std::size_t num_joints, std::optional<std::size_t> relief_uv) {
     GltfGeometry geometry;
     geometry.base = values_.floats(primitive_.positions, "VEC3", GltfValues::Integers::kToo);
     geometry.targets = targets(primitive_.targets);
@@ -29,6 +29,7 @@ class GeometryReader {
       if (attribute.semantic == "NORMAL")
         geometry.normal_targets = targets(primitive_.normal_targets);
     }
+    if (relief_uv && primitive_.tangents && !errors_) compare(*relief_uv, geometry);
     return geometry;
   }
 
@@ -81,6 +82,29 @@ class GeometryReader {
       for (float& x : read.values) x = std::round(x * static_cast<float>(read.max_value));
     }
     geometry.attributes.push_back(std::move(read));
+  }
+
+  // The tangents, which are left out, with what viewers compute in their place.
+  void compare(std::size_t relief_uv, GltfGeometry& geometry) {
+    const auto values_of = [&](const std::string& semantic) {
+      const auto found = std::find_if(geometry.attributes.begin(), geometry.attributes.end(),
+                                      [&](const auto& a) { return a.semantic == semantic; });
+      return found == geometry.attributes.end() ? std::span<const float>() : found->values;
+    };
+    const auto normals = values_of("NORMAL");
+    const auto uv = values_of("TEXCOORD_" + to_string(relief_uv));
+    if (normals.empty() || uv.empty() || !has_count(*primitive_.tangents)) return;
+    constexpr std::uint64_t kOfCorner = 96;  // a sum of the comparison
+    const std::uint64_t bytes =
+        4 * sizeof(float) * geometry.num_vertices() + 3 * kOfCorner * geometry.triangles.size();
+    if (!values_.memory().take(primitive_.path, bytes)) return;
+    const std::vector<float> tangents =
+        values_.floats(*primitive_.tangents, "VEC4", GltfValues::Integers::kToo);
+    if (!errors_) {
+      geometry.tangents =
+          compare_tangents({geometry.triangles, geometry.base, normals, uv, tangents});
+    }
+    values_.memory().give_back(bytes);
   }
 
   void read_influences(std::size_t num_joints, GltfGeometry& geometry) {
@@ -190,8 +214,9 @@ class GeometryReader {
 }  // namespace
 
 GltfGeometry read_gltf_geometry(const GltfPrimitive& primitive, std::size_t num_joints,
-                                GltfValues& values, GltfErrors& errors) {
-  return GeometryReader(primitive, values, errors).read(num_joints);
+                                std::optional<std::size_t> relief_uv, GltfValues& values,
+                                GltfErrors& errors) {
+  return GeometryReader(primitive, values, errors).read(num_joints, relief_uv);
 }
 
 void morph(std::span<const float> base, std::span<const GltfGeometry::Target> targets,

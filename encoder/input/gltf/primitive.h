@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "encoder/input/gltf/document/affine.h"
 #include "encoder/input/gltf/document/document.h"
 #include "encoder/input/gltf/document/values.h"
+#include "encoder/input/gltf/tangents.h"
 
 namespace rlpc {
 
@@ -39,14 +41,17 @@ struct GltfGeometry {
     std::vector<float> values;    // [vertex][width]; of normalised integers, these
   };
   std::vector<Attribute> attributes;
+  TangentCount tangents;  // of primitives with a normal map
 
   std::uint32_t num_vertices() const { return static_cast<std::uint32_t>(base.size() / 3); }
 };
 
-// num_joints: joints of the skin; 0: no skin, influences are not read. Joints and indices of
-// the result are in range. Complete only if there are no errors.
+// num_joints: joints of the skin; 0: no skin, influences are not read. relief_uv: number of the
+// texture coordinates of the normal map; none: there is none. Joints and indices of the result
+// are in range. Complete only if there are no errors.
 GltfGeometry read_gltf_geometry(const GltfPrimitive& primitive, std::size_t num_joints,
-                                GltfValues& values, GltfErrors& errors);
+                                std::optional<std::size_t> relief_uv, GltfValues& values,
+                                GltfErrors& errors);
 
 // Sets positions, or other values of vertices in threes, to base plus weighted targets, before
 // nodes or joints are applied. weights: [target of the mesh].

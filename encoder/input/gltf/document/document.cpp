@@ -125,6 +125,7 @@ GltfPrimitive read_primitive(const GltfValue& value, const Counts& counts) {
       primitive.attributes.push_back({name + to_string(number), accessor});
     }
   }
+  primitive.tangents = attributes["TANGENT"].index_if_any(counts.accessors, "accessors");
   primitive.material = value["material"].index_if_any(counts.materials, "materials");
   const GltfValue targets = value["targets"];
   for (std::size_t i = 0; i < targets.size(); ++i) {

@@ -41,7 +41,8 @@ struct GltfPrimitive {
   std::vector<std::optional<std::uint32_t>> normal_targets;
   std::vector<std::uint32_t> joints;  // as many as weights
   std::vector<std::uint32_t> weights;
-  std::vector<GltfAttribute> attributes;  // texture coordinates, normals, tangents, colours
+  std::vector<GltfAttribute> attributes;  // texture coordinates, normals, colours
+  std::optional<std::uint32_t> tangents;
   std::optional<std::uint32_t> material;
 
   bool has_triangles() const { return mode >= GltfMode::kTriangles; }
