@@ -70,13 +70,38 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
   mesh_.parts.push_back({{}, has_one ? std::optional<std::uint32_t>(0) : std::nullopt});
 }
 
+// Sets that were equal to others in the input (encoder/input/gltf/equal_uv.h): by their
+// numbers.
+std::map<std::uint32_t, std::uint32_t> GltfLook::equal_uvs() const {
+  std::map<std::uint32_t, std::uint32_t> equal;
+  constexpr std::size_t kMost = 256;
+  const GltfJson& root = asset_.root();
+  if (!root.is_object() || !root.contains("extras")) return equal;
+  const GltfJson& extras = root["extras"];
+  if (!extras.is_object() || !extras.contains("equal_uv")) return equal;
+  const GltfJson& list = extras["equal_uv"];
+  for (std::uint32_t n = 0; list.is_array() && n < std::min(list.size(), kMost); ++n) {
+    if (!list[n].is_number_unsigned()) continue;
+    const auto first = list[n].get<std::uint64_t>();
+    if (first < n && !uvs_.contains(n) && uvs_.contains(static_cast<std::uint32_t>(first))) {
+      equal[n] = static_cast<std::uint32_t>(first);
+    }
+  }
+  return equal;
+}
+
 void GltfLook::add_values(GltfJson& attributes, GlbBuffers& buffers) const {
-  std::uint32_t next = 0;
+  const auto name_of = [](std::uint32_t n) { return "TEXCOORD_" + std::to_string(n); };
+  std::map<std::uint32_t, std::uint32_t> accessors;
   for (const auto& [number, values] : uvs_) {
-    const std::uint32_t accessor = buffers.add_texture_coordinates(values.numbers);
+    accessors[number] = buffers.add_texture_coordinates(values.numbers);
+  }
+  for (const auto& [number, first] : equal_uvs()) accessors[number] = accessors[first];
+  std::uint32_t next = 0;
+  for (const auto& [number, accessor] : accessors) {
     // glTF allows no gaps between the numbers, by which materials choose sets: copies fill
     // them.
-    for (; next <= number; ++next) attributes["TEXCOORD_" + std::to_string(next)] = accessor;
+    for (; next <= number; ++next) attributes[name_of(next)] = accessor;
   }
   next = 0;
   for (const auto& [number, values] : colours_) {

@@ -42,6 +42,7 @@ class GltfLook {
     std::vector<float> numbers;  // of output vertices
   };
 
+  std::map<std::uint32_t, std::uint32_t> equal_uvs() const;
   void add_images(GltfJson& images, GlbBuffers& buffers) const;
   void make_parts(const std::vector<AttributeSet>& sets, std::span<const Triangle> triangles);
 

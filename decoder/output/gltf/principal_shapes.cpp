@@ -161,8 +161,15 @@ class Budget {
   double of_target_ = 0;
 };
 
-PrincipalShapes shapes_of(MatrixXf moves, double rms, std::size_t max_targets, float unit,
+// The RMS that shapes are to leave, and the one by which they are thinned out.
+struct Aim {
+  double rms;
+  double thinned;
+};
+
+PrincipalShapes shapes_of(MatrixXf& moves, const Aim& aim, std::size_t max_targets, float unit,
                           const TargetPrice* price) {
+  const double rms = aim.rms;
   const double places =
       static_cast<double>(moves.rows()) / 3 * static_cast<double>(moves.cols());
   const double wanted = rms * rms * places;
@@ -201,7 +208,7 @@ PrincipalShapes shapes_of(MatrixXf moves, double rms, std::size_t max_targets, f
     if (count == 0) break;
     block.conservativeResize(Eigen::NoChange, count);
     for (Index k = 0; k < count; ++k) {
-      thin_out(block.col(k), kThinned * rms / rms_of(weights.row(k)));
+      thin_out(block.col(k), kThinned * aim.thinned / rms_of(weights.row(k)));
     }
     weights = products_of(block, block).ldlt().solve(products_of(block, moves));
     MatrixXf rounded = weights.cast<float>();
@@ -228,18 +235,18 @@ PrincipalShapes shapes_of(MatrixXf moves, double rms, std::size_t max_targets, f
 
 PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_targets) {
   const float farthest = moves.size() > 0 ? moves.cwiseAbs().maxCoeff() : 0;
-  return shapes_of(std::move(moves), rms, max_targets, unit_of(farthest), nullptr);
+  return shapes_of(moves, {rms, rms}, max_targets, unit_of(farthest), nullptr);
 }
 
-PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_targets,
-                                 float unit) {
-  return shapes_of(std::move(moves), rms, max_targets, unit, nullptr);
+PrincipalShapes principal_shapes_of(MatrixXf& moves, double rms, double thinned,
+                                    std::size_t max_targets, float unit) {
+  return shapes_of(moves, {rms, thinned}, max_targets, unit, nullptr);
 }
 
 PrincipalShapes principal_shapes(MatrixXf moves, double rms, std::size_t max_targets,
                                  const TargetPrice& price) {
   const float farthest = moves.size() > 0 ? moves.cwiseAbs().maxCoeff() : 0;
-  return shapes_of(std::move(moves), rms, max_targets, unit_of(farthest), &price);
+  return shapes_of(moves, {rms, rms}, max_targets, unit_of(farthest), &price);
 }
 
 }  // namespace rlpc

@@ -31,8 +31,9 @@ PrincipalShapes principal_shapes(Eigen::MatrixXf moves, double rms, std::size_t 
 // No more than are worth their price.
 PrincipalShapes principal_shapes(Eigen::MatrixXf moves, double rms, std::size_t max_targets,
                                  const TargetPrice& price);
-// With that unit.
-PrincipalShapes principal_shapes(Eigen::MatrixXf moves, double rms, std::size_t max_targets,
-                                 float unit);
+// With that unit. Sets moves to what remains of them. thinned: as `rms`, but decides what
+// targets leave out.
+PrincipalShapes principal_shapes_of(Eigen::MatrixXf& moves, double rms, double thinned,
+                                    std::size_t max_targets, float unit);
 
 }  // namespace rlpc
