@@ -80,7 +80,8 @@ TEST(Streaming, MemoryDoesNotGrowWithTheSequence) {
   std::vector<std::uint8_t> long_stream;
   const std::size_t with_400 = peak_of_encoding(400, short_stream);
   const std::size_t with_2000 = peak_of_encoding(2000, long_stream);
-  EXPECT_LE(with_2000, with_400 + kOfGof * 160);
+  // The decoder that verifies the stream has a table of its own.
+  EXPECT_LE(with_2000, with_400 + 2 * kOfGof * 160);
   EXPECT_GT(long_stream.size(), 4 * short_stream.size());
   // The frames alone are larger than the allowed growth.
   static_assert(1600 * kVertices * 12 > 100 * kOfGof * 160);
