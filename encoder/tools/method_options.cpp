@@ -22,8 +22,9 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
                             {"smoothing", NormalChoice::kSmoothing},
                             {"exact", NormalChoice::kExact}},
                            "Normals: smoothing (which faces share them: computed for every "
-                           "frame), exact (those of the first frame), auto (smoothing if it "
-                           "comes near those of INPUT, default)")
+                           "frame), exact (those of the first frame, which turn with the "
+                           "surface), auto (for each, what is nearer to INPUT in decoded "
+                           "frames, default)")
       ->group(group);
   auto* const normal_bits = app.add_option(
       "--normal-bits", a.normal_bits,
