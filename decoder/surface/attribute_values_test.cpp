@@ -118,9 +118,11 @@ TEST(FrameNormals, UnitVectorsWithoutResidualFollowTheSurface) {
   FrameNormals normals(set, kSquare, 4);
   std::vector<float> bent(kFlat.begin(), kFlat.end());
   bent[3 * 3 + 2] = 100.0F;  // the fourth vertex goes up, and the second triangle with it
-  const double half = std::acos(1.0 / std::sqrt(3.0)) / 2;  // of what that one turns by
+  // Their angles at it are 45 and 60 degrees; the normal of the second is (1, -1, 1).
+  const double second = std::numbers::pi / (3 * std::sqrt(3.0));
+  const double angle = std::atan2(std::sqrt(2.0) * second, second + std::numbers::pi / 4);
   const auto at_first = normal_at(normals, bent, 0);
-  EXPECT_NEAR(std::acos(static_cast<double>(at_first[2])), half, 1e-5);
+  EXPECT_NEAR(std::acos(static_cast<double>(at_first[2])), angle, 1e-5);
   AttributeSet smoothing = set;
   smoothing.header.kind = ValueKind::kSmoothing;
   smoothing.header.num_components = 0;
