@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "encoder/attributes/encode_attributes.h"
+#include "encoder/rlpc_encoder.h"
 
 namespace rlpc {
 
