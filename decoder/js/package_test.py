@@ -219,6 +219,9 @@ class Modules(unittest.TestCase):
     def test_http_source(self):
         self.run_in_node("http_source_test.mjs")
 
+    def test_asset_limit(self):
+        self.run_in_node("asset_limit_test.mjs")
+
     def test_wasm_decoder(self):
         self.run_in_node("wasm_decoder_test.mjs")
 

@@ -13,6 +13,7 @@
 //
 // Each has an id, which its reply has, too: { id, result } or { id, error }. { cancel: id } ends a
 // request early. Messages without an id say what has been loaded: { stream, loaded, size }.
+import { checkAsset } from "./asset_limit.js";
 import { aborted, packed } from "./error.js";
 import { openSource } from "./sources.js";
 import { WasmAttributes } from "./wasm_attributes.js";
@@ -190,7 +191,9 @@ class OpenStream {
   }
 
   async asset(signal) {
-    return { bytes: await this.complete(() => this.look.asset(), signal) };
+    const bytes = await this.complete(() => this.look.asset(), signal);
+    if (bytes) checkAsset(bytes, this.options.maxMemory);
+    return { bytes };
   }
 }
 

@@ -57,8 +57,14 @@ function coarseLook(whole, { indices, coarseVertices }) {
 
 /** The asset, as three's GLTFLoader reads it; undefined if it cannot. */
 async function loadMaterials(decoder, textures, gltfLoader) {
-  const asset = await decoder.asset();
-  if (!asset) return undefined; // one of another format than GLB
+  let asset;
+  try {
+    asset = await decoder.asset();
+  } catch (error) {
+    if (error.kind !== "limit" && error.kind !== "invalid") throw error;
+    warn(`materials are left out: ${error.message}`);
+  }
+  if (!asset) return undefined; // or one of another format than GLB
   let loader = gltfLoader;
   if (!loader) {
     try {

@@ -80,3 +80,68 @@ test("AStreamThatIsShorterThanToldIsAnError", async () => {
   await whole.open();
   await assert.rejects(whole.load(40000, 40001), { kind: "network", message: /40000 bytes instead/ });
 });
+
+/** A body without end; sent: as in inPieces(). */
+function endless(sent) {
+  return new ReadableStream({
+    pull(controller) {
+      ++sent.pieces;
+      controller.enqueue(new Uint8Array(10000));
+    },
+    cancel() {
+      sent.isCancelled = true;
+    },
+  }, { highWaterMark: 0 });
+}
+
+/** Headers of a range, of a stream of `size` bytes. */
+function rangeOf(start, end, size = 1e9) {
+  return { "content-range": `bytes ${start}-${end - 1}/${size}` };
+}
+
+test("ARangeWithoutAnEndIsCancelled", async () => {
+  const sent = { pieces: 0, isCancelled: false };
+  serve(() => new Response(endless(sent), { status: 206, headers: rangeOf(0, 16384) }));
+  await assert.rejects(source().open(), { kind: "network", message: /more than the 16384 bytes/ });
+  assert.equal(sent.isCancelled, true);
+  assert.ok(sent.pieces <= 3, `${sent.pieces} pieces were loaded`);
+});
+
+test("ALaterRangeWithoutAnEndIsCancelled", async () => {
+  const sent = { pieces: 0, isCancelled: false };
+  serve((_, range) => (range === "bytes=0-16383"
+    ? new Response(kStream.slice(0, 16384), { status: 206, headers: rangeOf(0, 16384) })
+    : new Response(endless(sent), { status: 206, headers: rangeOf(20000, 45000) })));
+  const ranged = source(1e6);
+  await ranged.open();
+  await assert.rejects(ranged.load(20000, 45000), { kind: "network", message: /more than the 25000/ });
+  assert.equal(sent.isCancelled, true);
+  assert.ok(sent.pieces <= 4, `${sent.pieces} pieces were loaded`);
+});
+
+test("ARangeFromAnotherPlaceIsAnError", async () => {
+  serve(() => new Response(kStream.slice(1, 16385), { status: 206, headers: rangeOf(1, 16385) }));
+  await assert.rejects(source().open(), { kind: "network", message: /bytes from 1 on instead of 0/ });
+});
+
+test("AWholeStreamInPlaceOfARangeIsNotLoadedBeyondTheLimit", async () => {
+  const sent = { pieces: 0, isCancelled: false };
+  serve((_, range) => (range === "bytes=0-16383"
+    ? new Response(kStream.slice(0, 16384), { status: 206, headers: rangeOf(0, 16384) })
+    : new Response(endless(sent))));
+  const ranged = source(1e6);
+  await ranged.open();
+  await assert.rejects(ranged.load(20000, 45000), { kind: "limit" });
+  assert.ok(sent.pieces <= 1, `${sent.pieces} pieces were loaded`);
+});
+
+test("ASizeThatIsNoNumberLeadsToTheWholeStreamWithinTheLimit", async () => {
+  const sizes = ["bytes 0-16383/1" + "0".repeat(400), "bytes 0-16383/*"];
+  for (const range of sizes) {
+    const sent = { pieces: 0, isCancelled: false };
+    serve((method) => (method === "HEAD" ? new Response(null, { status: 405 })
+      : new Response(endless(sent), { status: 206, headers: { "content-range": range } })));
+    await assert.rejects(source(50000).open(), { kind: "limit" });
+    assert.ok(sent.pieces <= 7, `${sent.pieces} pieces were loaded`);
+  }
+});

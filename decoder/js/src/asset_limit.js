@@ -1,0 +1,54 @@
+// The JSON of an asset (a GLB), measured before anything parses it: a stream of a few kilobytes can
+// hold megabytes of it, which become hundreds as objects.
+import { RlpcError } from "./error.js";
+
+const kTextSize = 12; // where the size of the first chunk is
+const kText = 20; // where that chunk is
+const kMaxDepth = 100; // as in common/json/json_text.h
+const kBytesOfValue = 160; // an object or array with its place in another
+const kBytesOfByte = 4; // of text, as strings
+
+const kQuote = 0x22;
+const kBackslash = 0x5c;
+const kComma = 0x2c;
+const kOpening = new Set([0x5b, 0x7b]); // [ {
+const kClosing = new Set([0x5d, 0x7d]);
+
+/** An upper bound of the memory of a text as objects, and how deeply these nest. The text need not
+ * be valid. Cost: linear in the text. */
+export function measureJson(text) {
+  let [values, depth, deepest, isString] = [1, 0, 0, false];
+  for (let i = 0; i < text.length; ++i) {
+    const byte = text[i];
+    if (isString) {
+      if (byte === kBackslash) ++i;
+      else if (byte === kQuote) isString = false;
+    } else if (byte === kQuote) {
+      isString = true;
+    } else if (kOpening.has(byte)) {
+      ++values;
+      deepest = Math.max(deepest, ++depth);
+    } else if (kClosing.has(byte)) {
+      --depth;
+    } else if (byte === kComma) {
+      ++values;
+    }
+  }
+  return { bytes: kBytesOfValue * values + kBytesOfByte * text.length, deepest };
+}
+
+/** Throws an RlpcError if parsing the JSON of an asset would take more than maxBytes, or if that is
+ * nested too deeply for functions that walk through it. */
+export function checkAsset(glb, maxBytes) {
+  if (glb.length < kText) return;
+  const size = new DataView(glb.buffer, glb.byteOffset).getUint32(kTextSize, true);
+  const { bytes, deepest } = measureJson(glb.subarray(kText, kText + size));
+  if (deepest > kMaxDepth) {
+    throw new RlpcError(`the JSON of the asset is nested more than ${kMaxDepth} levels deep`,
+      { kind: "invalid", element: "asset_size" });
+  }
+  if (bytes + glb.length > maxBytes) {
+    throw new RlpcError(`the asset takes about ${bytes + glb.length} bytes, more than maxMemory, ` +
+      `${maxBytes} bytes`, { kind: "limit", element: "asset_size" });
+  }
+}
