@@ -5,11 +5,15 @@
 
 namespace rlpc {
 
-// Call first in main(), before starting threads. SIGINT, SIGTERM and SIGHUP then end the
-// process after removing everything on the list below; a second signal does not wait. Ignored
-// signals, as under nohup, stay ignored. SIGXFSZ is ignored: a file size limit becomes an error
-// of write(), like a full disk.
+// Call first in main(), before starting threads. SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU and
+// other signals that by default end a process then do so after removing everything on the list
+// below; a second signal does not wait. Ignored signals, as under nohup, stay ignored. SIGXFSZ
+// is ignored, and SIGPIPE noted: a file size limit and a closed pipe become errors of write(),
+// like a full disk.
 void handle_interrupts();
+
+// Ends the process by SIGPIPE if one has been noted. Call when no file is unfinished.
+void end_if_pipe_was_closed();
 
 // Adds a file, or a folder with its contents, to the list that a signal removes.
 void add_unfinished(const std::string& path);

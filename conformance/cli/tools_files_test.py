@@ -6,12 +6,16 @@
 
 import json
 import os
+import resource
 import signal
 import struct
 import subprocess
 import time
 
 from tools_testing import INPUTS, Tools, ToolsTest, main, run, write_pc2
+
+
+NO_CORE = {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_CORE, (0, 0))}
 
 
 class Interrupts(ToolsTest):
@@ -60,6 +64,40 @@ class Interrupts(ToolsTest):
                              stdin=silent.stdout)
             silent.kill()
         self.assertEqual(self.files(), ["clip.obj", "clip.pc2"])
+
+    def test_every_signal_that_ends_a_process(self):
+        mesh = self.long_clip()
+        encode = [*mesh, "-o", self.path("x.rlpc"), "--order-map", self.path("x.map")]
+        for by in (signal.SIGQUIT, signal.SIGXCPU, signal.SIGALRM, signal.SIGVTALRM,
+                   signal.SIGPROF, signal.SIGUSR1, signal.SIGUSR2):
+            self.interrupted(by, "x.map.partial", "rlpcenc", *encode, "--threads", 2, **NO_CORE)
+            self.assertEqual(self.files(), ["clip.obj", "clip.pc2"])
+
+    def test_time_that_runs_out(self):
+        mesh = self.long_clip()
+        limit = {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_CPU, (1, 10))}
+        done = run("rlpcenc", *mesh, "-o", self.path("x.rlpc"), "--preset", "slow", **limit)
+        self.assertEqual(done.code, -signal.SIGXCPU)
+        self.assertEqual(self.files(), ["clip.obj", "clip.pc2"])
+
+    def test_a_reader_that_goes_away(self):
+        self.long_clip()
+        self.encode_long()
+        before = self.files()
+        for tool, *arguments in (
+                ("rlpcenc", self.path("clip.obj"), "--points", self.path("clip.pc2"), "-q",
+                 "--kg", 5, "--preset", "fast", "-o", "-", "--order-map", self.path("x.map")),
+                ("rlpcdec", self.path("x.rlpc"), "-o", "-", "--format", "rlpd", "-q"),
+                ("rlpcinfo", self.path("x.rlpc"), "--trace")):
+            with subprocess.Popen([Tools.folder / tool, *map(str, arguments)],
+                                  stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as running:
+                running.stdout.close()
+                self.assertEqual(running.wait(), -signal.SIGPIPE, tool)
+            self.assertEqual(self.files(), before, tool)
+
+    def encode_long(self):
+        self.ok("rlpcenc", self.path("clip.obj"), "--points", self.path("clip.pc2"), "-o",
+                self.path("x.rlpc"), "--kg", 5, "--preset", "fast", "-q")
 
     def test_signals_that_are_ignored(self):
         """SIGHUP is ignored, as under nohup."""
