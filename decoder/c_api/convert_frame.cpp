@@ -32,11 +32,12 @@ std::size_t stride_of(const rlpc_channel& channel) {
 // value(v, c): of a vertex and an axis.
 template <class Value>
 void write(const rlpc_channel& channel, std::size_t count, const Value& value) {
-  auto* place = static_cast<unsigned char*>(channel.data);
+  auto* const first = static_cast<unsigned char*>(channel.data);
   const std::size_t stride = stride_of(channel);
-  for (std::size_t v = 0; v < count; ++v, place += stride) {
+  for (std::size_t v = 0; v < count; ++v) {
     const std::array values{value(v, 0), value(v, 1), value(v, 2)};
-    std::memcpy(place, values.data(), sizeof values);
+    // No place is computed behind the last vertex: it may lie outside the buffer.
+    std::memcpy(first + v * stride, values.data(), sizeof values);
   }
 }
 

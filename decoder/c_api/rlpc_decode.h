@@ -27,7 +27,7 @@
 // whatever the callbacks are, the C and C++ runtimes allocate what they need for files, for
 // starting threads, and for the text of an error, and zlib for metadata and assets. If memory
 // runs out, calls return RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases
-// everything.
+// everything. A thread that calls these functions needs a stack of 64 KiB.
 #pragma once
 
 #include <stddef.h>
@@ -128,7 +128,8 @@ typedef struct rlpc_gof {
 // Estimated memory, as compared with max_memory_bytes; upper bounds of what is allocated.
 typedef struct rlpc_memory {
   size_t struct_size;     // as passed to rlpc_decoder_memory
-  uint64_t stream_bytes;  // always: connectivity, what follows from it, four frames per thread
+  uint64_t stream_bytes;  // always: connectivity, what follows from it, four frames per thread,
+                          // metadata and clips
   uint64_t gof_bytes;     // of the GOF in use, without skinned models that it shares
   uint64_t cached_bytes;  // of those kept, with their skinned models
 } rlpc_memory;

@@ -23,7 +23,8 @@
 // Memory: frames and reports are in buffers of the caller, and output is passed to a callback.
 // Only the handle must be closed; it can be placed in memory of the caller (place). The
 // analysis uses C++ operator new and no other allocator. If memory runs out, calls return
-// RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases everything.
+// RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases everything. A thread
+// that calls these functions needs a stack of 256 KiB.
 #pragma once
 
 #include <stddef.h>

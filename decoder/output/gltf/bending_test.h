@@ -1,7 +1,6 @@
 // What tests of skins move.
 #pragma once
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "decoder/output/gltf/eigen.h"
 #include "decoder/output/gltf/skin_shape.h"
 
 namespace rlpc {

@@ -1,8 +1,9 @@
 // Morph targets for the moves of vertices over time.
 #pragma once
 
-#include <Eigen/Dense>
 #include <cstddef>
+
+#include "decoder/output/gltf/eigen.h"
 
 namespace rlpc {
 

@@ -2,8 +2,6 @@
 // animations.
 #pragma once
 
-#include <Eigen/Dense>
-#include <Eigen/StdVector>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +11,7 @@
 #include "common/mesh/clip.h"
 #include "common/mesh/mesh.h"
 #include "common/mesh/skeleton.h"
+#include "decoder/output/gltf/eigen.h"
 
 namespace rlpc {
 

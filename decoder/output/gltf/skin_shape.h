@@ -1,7 +1,6 @@
 // The rest shape of a skin, and the morph targets for what its joints leave.
 #pragma once
 
-#include <Eigen/Dense>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "common/mesh/skeleton.h"
+#include "decoder/output/gltf/eigen.h"
 #include "decoder/output/gltf/principal_shapes.h"
 #include "decoder/output/gltf/skin_joints.h"
 

@@ -1,13 +1,13 @@
 // The morph targets of a skin, and their weights over time.
 #pragma once
 
-#include <Eigen/Dense>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "common/mesh/clip.h"
+#include "decoder/output/gltf/eigen.h"
 #include "decoder/output/gltf/glb_animation.h"
 #include "decoder/output/gltf/glb_mesh.h"
 #include "decoder/output/gltf/principal_shapes.h"
