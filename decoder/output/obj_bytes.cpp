@@ -2,12 +2,25 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
 #include "common/io/float_position.h"
 
 namespace rlpc {
+namespace {
+
+// Tells textures apart, whatever numbers they have.
+std::array<std::uint64_t, 7> bits_of(const ObjTexture& texture) {
+  std::array<std::uint64_t, 7> bits{texture.set};
+  for (std::size_t i = 0; i < 6; ++i) {
+    bits[1 + i] = std::bit_cast<std::uint64_t>(texture.rows[i / 3][i % 3]);
+  }
+  return bits;
+}
+
+}  // namespace
 
 ObjBytes::ObjBytes(const SinkOptions& options, const std::string& materials)
     : options_(options), attributes_(options), normals_(attributes_, options) {
@@ -22,7 +35,7 @@ ObjBytes::ObjBytes(const SinkOptions& options, const std::string& materials)
   append_faces(ObjMaterials(options));
 }
 
-const ObjBytes::UvList* ObjBytes::uv_of(const ObjMaterials& materials, std::size_t triangle) {
+ObjBytes::UvList* ObjBytes::uv_of(const ObjMaterials& materials, std::size_t triangle) {
   const std::uint32_t material =
       attributes_.material == nullptr ? 0 : attributes_.material->values[triangle];
   const auto [place, is_new] = uv_list_of_material_.try_emplace(material);
@@ -31,29 +44,46 @@ const ObjBytes::UvList* ObjBytes::uv_of(const ObjMaterials& materials, std::size
 }
 
 std::optional<std::size_t> ObjBytes::add_uv(const ObjTexture& texture) {
-  const auto known = std::find_if(uv_lists_.begin(), uv_lists_.end(),
-                                  [&](const UvList& list) { return list.texture == texture; });
-  if (known != uv_lists_.end()) return static_cast<std::size_t>(known - uv_lists_.begin());
   const AttributeSet* const set = find_uv(options_, texture.set);
   if (set == nullptr) return std::nullopt;
-  uv_lists_.push_back({texture, set, num_uv_ + 1});
-  const std::vector<float> uv = attribute_numbers(*set);
-  for (std::size_t i = 0; i + 1 < uv.size(); i += 2) {
-    std::array<float, 2> place{};
-    for (std::size_t c = 0; c < 2; ++c) {
-      const auto& row = texture.rows[c];
-      const auto x = static_cast<float>(row[0] * uv[i] + row[1] * uv[i + 1] + row[2]);
-      place[c] = c == 0 ? x : 1.0F - x;
-      if (!std::isfinite(place[c])) place[c] = 0.0F;
-    }
-    header_ += "vt ";
-    append_number(header_, place[0]);
-    header_ += ' ';
-    append_number(header_, place[1]);
-    header_ += '\n';
+  const auto [known, is_new] = list_of_texture_.try_emplace(bits_of(texture), uv_lists_.size());
+  if (!is_new) return known->second;
+  UvList list{texture, set, std::nullopt, {}};
+  const auto [values, is_first] = uv_of_set_.try_emplace(set);
+  if (is_first) {
+    values->second = attribute_numbers(*set);
+    list.first = num_uv_ + 1;
+    num_uv_ += values->second.size() / 2;
+    for (std::uint32_t i = 0; i < values->second.size() / 2; ++i) append_uv(list, i);
   }
-  num_uv_ += uv.size() / 2;
-  return uv_lists_.size() - 1;
+  uv_lists_.push_back(std::move(list));
+  return known->second;
+}
+
+std::uint64_t ObjBytes::number_of(UvList& list, std::uint32_t value) {
+  if (list.first) return *list.first + value;
+  const auto [place, is_new] = list.numbers.try_emplace(value, num_uv_ + 1);
+  if (is_new) {
+    ++num_uv_;
+    append_uv(list, value);
+  }
+  return place->second;
+}
+
+void ObjBytes::append_uv(const UvList& list, std::uint32_t value) {
+  const float* const uv = &uv_of_set_.at(list.set)[2 * std::size_t{value}];
+  std::array<float, 2> place{};
+  for (std::size_t c = 0; c < 2; ++c) {
+    const auto& row = list.texture.rows[c];
+    const auto x = static_cast<float>(row[0] * uv[0] + row[1] * uv[1] + row[2]);
+    place[c] = c == 0 ? x : 1.0F - x;
+    if (!std::isfinite(place[c])) place[c] = 0.0F;
+  }
+  header_ += "vt ";
+  append_number(header_, place[0]);
+  header_ += ' ';
+  append_number(header_, place[1]);
+  header_ += '\n';
 }
 
 std::vector<std::size_t> ObjBytes::triangles_by_part() const {
@@ -82,7 +112,7 @@ void ObjBytes::append_faces(const ObjMaterials& materials) {
       faces_ += "usemtl " + materials.material_name(attributes_.material->values[t]) + "\n";
     }
     last = t;
-    const UvList* const uv = uv_of(materials, t);
+    UvList* const uv = uv_of(materials, t);
     faces_ += 'f';
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = options_.triangles[t][k];
@@ -92,7 +122,7 @@ void ObjBytes::append_faces(const ObjMaterials& materials) {
       if (uv != nullptr) {
         faces_ += '/';
         const auto& value_of_corner = uv->set->value_of_corner;
-        append_number(faces_, uv->first + (value_of_corner.empty() ? v : value_of_corner[c]));
+        append_number(faces_, number_of(*uv, value_of_corner.empty() ? v : value_of_corner[c]));
       }
       if (!normals_.exist()) continue;
       faces_ += uv != nullptr ? "/" : "//";
