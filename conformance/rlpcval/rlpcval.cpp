@@ -15,6 +15,7 @@
 #include "common/io/messages.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
+#include "common/json/json.h"
 #include "common/tools/command_line.h"
 #include "conformance/rlpcval/rlpcval_report.h"
 #include "conformance/rlpcval/rule_explanations.h"
@@ -156,8 +157,7 @@ int main(int argc, char** argv) try {
   }
   if (options.json) {
     const nlohmann::ordered_json json = {{"rlpcval", RLPC_VERSION}, {"streams", streams}};
-    constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;  // in paths
-    std::cout << json.dump(2, ' ', false, kReplace) << "\n";
+    std::cout << rlpc::json_text(json, 2) << "\n";
   }
   return rlpc::after_standard_output("rlpcval", code, rlpc::kExitIo);
 } catch (const std::bad_alloc&) {

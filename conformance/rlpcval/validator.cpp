@@ -21,6 +21,7 @@ void StreamValidator::run() {
     unsupported_ = report_.count(Severity::kUnsupported) > 0;
     if (!is_foreign()) walk();
     end_slices();
+    check_due_frames();
     end_models();
     findings_.in_unit(std::nullopt);
     for (const GofIndexCheck& index : index_.checks) {
@@ -47,7 +48,10 @@ void StreamValidator::walk() {
       options_.progress(static_cast<double>(offset) / static_cast<double>(units_.size()));
     }
     // A decoder decodes the last GOF before it looks for what is missing.
-    if (offset >= units_.size()) end_slices();
+    if (offset >= units_.size()) {
+      end_slices();
+      check_due_frames();
+    }
     findings_.in_unit(std::nullopt);
     findings_.suspect(false);
     // Bytes after the end have been reported; they are examined only if they are units.
@@ -155,6 +159,7 @@ void StreamValidator::remember_place(const UnitHeader& unit) {
 // 6.2 unit_body( )
 bool StreamValidator::visit(const UnitHeader& unit) {
   if (!is_slice_type(unit.type())) end_slices();
+  if (unit.type() != UnitType::kGofHash) check_due_frames();
   findings_.in_unit(FindingUnit{report_.units, unit.type_byte, unit.offset});
   const bool known = unsupported_ || check_place(unit);
   const bool is_gof = unit.type() == UnitType::kGof;

@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "common/bitstream/crc32.h"
+#include "common/json/json_text.h"
 #include "common/syntax/stream_format.h"
 #include "conformance/rlpcval/validator_elements.h"
 #include "conformance/rlpcval/validator_gofs.h"
 #include "conformance/rlpcval/validator_stream.h"
 #include "decoder/parse/memory_estimate.h"
 #include "decoder/parse/parse_gof_hash.h"
-#include "decoder/parse/sequence/json_text.h"
 #include "decoder/parse/sequence/parse_clip_table.h"
 #include "decoder/parse/sequence/parse_connectivity.h"
 #include "decoder/parse/sequence/parse_metadata.h"
@@ -262,7 +262,16 @@ void StreamValidator::end_gof() {
   if (const auto* skinned = std::get_if<SkinnedGof>(&gof_.access_unit->gof)) {
     use_model(*skinned);
   }
-  if (!lead_.header->positions) return;
+  gof_.frames_due = lead_.header->positions;
+  // Frames of a stream that is still being made are decoded before anything else is read.
+  if (is_live(lead_.header->header, gof_.access_unit->header().kind)) check_due_frames();
+}
+
+// 6.1 access_unit( ): a GOF hash unit is read before the frames are decoded, so its own errors
+// come first.
+void StreamValidator::check_due_frames() {
+  if (!std::exchange(gof_.frames_due, false)) return;
+  findings_.in_unit(gof_.place);
   compare_frame_crcs(*gof_.access_unit);
   if (index_.gofs.size() == 1 && !gap_) compare_first_frame(*gof_.access_unit);
 }
@@ -291,9 +300,11 @@ void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
     return;
   }
   const auto hash = parse_gof_hash(r, gof_.num_frames);
-  if (!hash) {
-    findings_.error(hash.error());
-  } else if (gof_.access_unit && lead_.header->positions) {
+  if (!hash) findings_.error(hash.error());
+  check_due_frames();
+  findings_.in_unit(FindingUnit{report_.units, unit.type_byte, unit.offset});
+  if (!hash) return;
+  if (gof_.access_unit && lead_.header->positions) {
     compare_hashes(unit, *hash);
   } else {
     report_.complete = false;
@@ -374,7 +385,7 @@ void StreamValidator::gof_index(const UnitHeader& unit, const Payload& payload) 
 // 6.10 metadata( )
 void StreamValidator::metadata(const UnitHeader& unit, const Payload& payload) {
   BitReader r = bits_of(unit, payload);
-  const auto json = parse_metadata(r);
+  const auto json = parse_metadata(r, memory_limit());
   if (!json) return findings_.error(json.error());
   if (const auto at = find_json_error(*json)) {
     findings_.unchecked("R-MET-03", "metadata_json", unit.payload_offset() * 8 + 32,
@@ -387,7 +398,7 @@ void StreamValidator::metadata(const UnitHeader& unit, const Payload& payload) {
 void StreamValidator::clip_table(const UnitHeader& unit, const Payload& payload) {
   if (!can_read()) return;
   BitReader r = bits_of(unit, payload);
-  const auto clips = parse_clip_table(r, lead_.header->header.num_frames);
+  const auto clips = parse_clip_table(r, lead_.header->header.num_frames, memory_limit());
   if (!clips) return findings_.error(clips.error());
   for (const Clip& clip : *clips) {
     const std::size_t at = find_clip_name_error(clip.name);

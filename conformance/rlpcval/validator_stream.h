@@ -63,6 +63,7 @@ class StreamValidator {
   // its hash.
   void end_slices();
   void end_gof();
+  void check_due_frames();
   void gof_hash(const UnitHeader& unit, const Payload& payload);
   void compare_hashes(const UnitHeader& unit, const GofHash& hash);
   void gof_index(const UnitHeader& unit, const Payload& payload);
@@ -153,6 +154,7 @@ class StreamValidator {
     bool may_have_slices = false;                       // it is a skinned GOF, or unknown
     bool may_have_frames = false;                       // it is a GOF of frames, or unknown
     std::optional<AccessUnit> access_unit;              // if all units could be read
+    bool frames_due = false;                            // they are yet to be decoded
   };
   CurrentGof gof_;
 

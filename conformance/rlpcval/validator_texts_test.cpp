@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/json/json_text.h"
 #include "conformance/rlpcval/rule_explanations.h"
-#include "decoder/parse/sequence/json_text.h"
 
 namespace rlpc {
 namespace {

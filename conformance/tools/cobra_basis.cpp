@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/io/messages.h"
+#include "common/json/json.h"
 #include "conformance/tools/basis_study.h"
 
 namespace rlpc {
@@ -118,7 +119,7 @@ int main(int argc, char** argv) try {
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
-  std::cout << rlpc::study(options).dump(1) << '\n' << std::flush;
+  std::cout << rlpc::json_text(rlpc::study(options), 1) << '\n' << std::flush;
   return std::cout ? 0 : 1;
 } catch (const std::exception& error) {
   rlpc::print_message("cobra_basis", error.what());

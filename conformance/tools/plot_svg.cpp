@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/io/messages.h"
+#include "common/json/json.h"
 #include "decoder/report/svg_plot.h"
 
 namespace {
@@ -61,7 +62,10 @@ int main(int argc, char**) try {
     return 64;
   }
   const std::string text(std::istreambuf_iterator<char>(std::cin), {});
-  const rlpc::Plot plot = plot_of(nlohmann::json::parse(text));
+  rlpc::JsonProblem problem;
+  const auto json = rlpc::read_json<nlohmann::json>(text, UINT64_MAX, problem);
+  if (!json) throw std::runtime_error(problem.message);
+  const rlpc::Plot plot = plot_of(*json);
   if (const std::string wrong = rlpc::check_plot(plot); !wrong.empty()) {
     throw std::runtime_error(wrong);
   }

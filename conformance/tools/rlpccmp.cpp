@@ -18,6 +18,7 @@
 #include "common/io/output_file.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
+#include "common/json/json.h"
 #include "common/tools/command_line.h"
 #include "conformance/tools/comparison_input.h"
 #include "conformance/tools/comparison_page.h"
@@ -268,8 +269,7 @@ void print_json(const rlpc::ComparisonPair& pair, const Rate& rate, const rlpc::
   }
   json["metrics"] = rlpc::metrics_json(d.metrics);
   json["surface"] = rlpc::surface_json(d.surface);
-  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;  // in names
-  std::cout << json.dump(2, ' ', false, kReplace) << "\n";
+  std::cout << rlpc::json_text(json, 2) << "\n";
 }
 
 void print_report(const rlpc::ComparisonPair& pair, const Rate& rate,

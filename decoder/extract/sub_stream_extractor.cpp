@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "common/bitstream/crc32.h"
+#include "common/json/json_text.h"
 #include "decoder/parse/attributes/parse_attributes.h"
-#include "decoder/parse/sequence/json_text.h"
 #include "decoder/parse/sequence/parse_metadata.h"
 #include "decoder/recon/gof_recon.h"
 
@@ -42,7 +42,7 @@ Result<StreamSummary> check_gofs(StreamReader& stream) {
 }
 
 // 7.10: the requirements on metadata that decoding does not check.
-Result<bool> check_metadata(UnitReader& units) {
+Result<bool> check_metadata(UnitReader& units, const MemoryLimit& memory) {
   for (std::uint64_t offset = kStreamHeaderBytes; offset < units.size();) {
     const auto unit = units.header_at(offset);
     if (!unit) return unit.error();
@@ -51,7 +51,7 @@ Result<bool> check_metadata(UnitReader& units) {
     const auto payload = units.payload(*unit);
     if (!payload) return payload.error();
     BitReader r = units.bits(*unit, *payload);
-    const auto json = parse_metadata(r);
+    const auto json = parse_metadata(r, memory);
     if (!json) return json.error();
     if (find_json_error(*json)) {
       return Error{Errc::kInvalid, "R-MET-03", "metadata_json",
@@ -86,7 +86,9 @@ Result<SubStreamExtractor> SubStreamExtractor::open(std::unique_ptr<ByteSource> 
   if (const auto ok = stream->open(); !ok) return ok.error();
   auto summary = check_gofs(*stream);
   if (!summary) return summary.error();
-  if (const auto ok = check_metadata(stream->units()); !ok) return ok.error();
+  if (const auto ok = check_metadata(stream->units(), stream->access_units().memory_limit());
+      !ok)
+    return ok.error();
   return SubStreamExtractor(std::move(stream), with_cut(options, cut), std::move(*summary));
 }
 

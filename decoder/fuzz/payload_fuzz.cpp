@@ -52,12 +52,12 @@ void gof_index(BitReader& r, std::uint32_t num_frames) {
 }
 
 void metadata(BitReader& r, std::uint32_t) {
-  const auto json = rlpc::parse_metadata(r);
+  const auto json = rlpc::parse_metadata(r, {UINT64_MAX, 0});
   if (json) fuzz_check(json->size() <= rlpc::kMaxMetadataBytes);
 }
 
 void clip_table(BitReader& r, std::uint32_t num_frames) {
-  const auto clips = rlpc::parse_clip_table(r, num_frames);
+  const auto clips = rlpc::parse_clip_table(r, num_frames, {UINT64_MAX, 0});
   if (!clips) return;
   fuzz_check(!clips->empty() && clips->size() <= rlpc::kMaxClips);
   for (const rlpc::Clip& clip : *clips) {

@@ -5,40 +5,30 @@
 #include <utility>
 
 #include "common/io/binary_numbers.h"
+#include "common/json/json.h"
 
 namespace rlpc {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 12;
 constexpr std::size_t kChunkBytes = 8;
-constexpr int kDeepest = 100;  // of nested values: writers of JSON are recursive
 
 struct Chunks {
-  std::string json;
-  std::string binary;
+  std::string_view json;
+  std::string_view binary;
 };
 
-std::optional<Chunks> chunks_of(const std::string& glb) {
+std::optional<Chunks> chunks_of(std::string_view glb) {
   if (!glb.starts_with("glTF") || glb.size() < kHeaderBytes + kChunkBytes) return std::nullopt;
   Chunks chunks;
   for (std::size_t at = kHeaderBytes; at + kChunkBytes <= glb.size();) {
     const std::uint64_t size = load_u32(glb, at);
     if (size > glb.size() - at - kChunkBytes) return std::nullopt;
-    const std::string kind = glb.substr(at + 4, 4);
+    const std::string_view kind = glb.substr(at + 4, 4);
     (kind == "JSON" ? chunks.json : chunks.binary) = glb.substr(at + kChunkBytes, size);
     at += kChunkBytes + size;
   }
   return chunks;
-}
-
-GltfJson parse(const std::string& text) {
-  bool too_deep = false;
-  const auto look = [&](int depth, GltfJson::parse_event_t, GltfJson&) {
-    too_deep = too_deep || depth > kDeepest;
-    return !too_deep;
-  };
-  GltfJson json = GltfJson::parse(text, look, false);
-  return too_deep ? GltfJson() : json;
 }
 
 std::uint64_t number_in(const GltfJson& object, const char* key) {
@@ -49,13 +39,29 @@ std::uint64_t number_in(const GltfJson& object, const char* key) {
 
 }  // namespace
 
+std::uint64_t asset_memory_bytes(std::string_view glb) {
+  constexpr std::uint64_t kTrees = 2;   // one that is read, one that is written
+  constexpr std::uint64_t kCopies = 5;  // of images: on their way to files
+  const auto chunks = chunks_of(glb);
+  JsonShape shape;
+  if (!chunks || measure_json(chunks->json, shape)) return kCopies * glb.size();
+  return kTrees * json_tree_bytes(shape, chunks->json.size()) + kCopies * glb.size();
+}
+
 StreamAsset::StreamAsset(const std::string& glb) {
   if (glb.empty()) return;
   problem_ = "the stream's materials are not a GLB; they are left out";
-  auto chunks = chunks_of(glb);
+  const auto chunks = chunks_of(glb);
   if (!chunks) return;
-  root_ = parse(chunks->json);
-  binary_ = std::move(chunks->binary);
+  JsonProblem problem;
+  auto root = read_json<GltfJson>(chunks->json, UINT64_MAX, problem);
+  if (!root) {
+    problem_ =
+        "the stream's materials are left out, as their JSON cannot be read: " + problem.message;
+    return;
+  }
+  root_ = *std::move(root);
+  binary_ = chunks->binary;
   const bool good = is_good();
   if (good) problem_ = "images of the stream's materials overlap; they are left out";
   if (good && images_fit()) {
@@ -66,7 +72,7 @@ StreamAsset::StreamAsset(const std::string& glb) {
 }
 
 bool StreamAsset::is_good() const {
-  if (!root_.is_object() || root_.is_discarded()) return false;
+  if (!root_.is_object()) return false;
   constexpr const char* kArrays[] = {"materials",      "textures",          "samplers",
                                      "images",         "bufferViews",       "nodes",
                                      "extensionsUsed", "extensionsRequired"};

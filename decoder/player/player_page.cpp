@@ -10,6 +10,7 @@
 
 #include "common/io/bounded_input.h"
 #include "common/io/output_file.h"
+#include "common/json/json.h"
 #include "decoder/output/base64.h"
 
 namespace rlpc {
@@ -27,8 +28,7 @@ constexpr std::size_t kPartBytes = std::size_t{3} << 20;
 
 // Escapes text for a script element, which `</` could end.
 std::string description(const std::string& name) {
-  std::string json = nlohmann::json{{"name", name}}.dump(
-      -1, ' ', true, nlohmann::json::error_handler_t::replace);
+  std::string json = json_text(nlohmann::json{{"name", name}}, -1, true);
   for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) {
     json.replace(at, 1, "\\u003c");
   }

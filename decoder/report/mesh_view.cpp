@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json.h"
 #include "decoder/output/base64.h"
 #include "decoder/report/assets.h"
 
@@ -127,7 +128,8 @@ std::string MeshView::html(double diagonal) const {
       {"upper", upper_value(errors_)},
       {"diagonal", diagonal}};
   std::string html(kMeshViewHtml);
-  html += "<script type=\"application/json\" id=\"mesh-info\">" + info.dump() + "</script>\n";
+  html +=
+      "<script type=\"application/json\" id=\"mesh-info\">" + json_text(info) + "</script>\n";
   html += data_html("mesh-triangles", corners);
   html += frames_html(original_, "mesh-original", low, step);
   html += frames_html(decoded_, "mesh-decoded", low, step);

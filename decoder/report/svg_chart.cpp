@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json.h"
 #include "decoder/report/html_page.h"
 #include "decoder/report/svg_axis.h"
 
@@ -60,8 +61,8 @@ std::string figure(std::string_view title, std::string_view unit, const std::str
   data["bottom"] = kHeight - kBottom;
   for (const ChartSeries& s : series) data["names"].push_back(s.name);
   std::string html = "<figure class=\"card chart\" data-chart=\"";
-  html +=
-      escape_html(data.dump()) + "\">\n<figcaption><b>" + escape_html(title) + "</b> <span>";
+  html += escape_html(json_text(data)) + "\">\n<figcaption><b>" + escape_html(title) +
+          "</b> <span>";
   html += escape_html(unit) + "</span></figcaption>\n<svg viewBox=\"0 0 " + tick_text(kWidth) +
           " " + tick_text(kHeight) + "\" role=\"img\" aria-label=\"" + escape_html(title) +
           "\">\n";

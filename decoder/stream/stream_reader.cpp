@@ -17,6 +17,16 @@
 #include "decoder/stream/find_gof_index.h"
 
 namespace rlpc {
+namespace {
+
+std::uint64_t bytes_of(const Vector<Clip>& clips) {
+  std::uint64_t bytes = clips.capacity() * sizeof(Clip);
+  for (const Clip& clip : clips) bytes += clip.name.capacity();
+  return bytes;
+}
+
+}  // namespace
+
 StreamReader::StreamReader(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
     : limits_(options.limits),
       is_coarse_(options.coarse_layers != SliceCut::kAll),
@@ -135,12 +145,19 @@ Result<bool> StreamReader::parse_ancillary(const UnitHeader& unit) {
   return units_.skip(unit);
 }
 
+void StreamReader::count_kept(std::uint64_t before, std::uint64_t now) {
+  bytes_in_use_ += now - before;
+  access_units_.set_bytes_in_use(bytes_in_use_);
+  units_.set_bytes_in_use(access_units_.memory_limit().bytes_in_use);
+}
+
 Result<bool> StreamReader::read_metadata(const UnitHeader& unit) {
   const auto payload = units_.payload(unit);
   if (!payload) return payload.error();
   BitReader r = units_.bits(unit, *payload);
-  auto json = parse_metadata(r);
+  auto json = parse_metadata(r, access_units_.memory_limit());
   if (!json) return json.error();
+  count_kept(metadata_.size(), json->size());
   metadata_ = std::move(*json);
   return true;
 }
@@ -149,8 +166,9 @@ Result<bool> StreamReader::read_clip_table(const UnitHeader& unit) {
   const auto payload = units_.payload(unit);
   if (!payload) return payload.error();
   BitReader r = units_.bits(unit, *payload);
-  auto clips = parse_clip_table(r, context_.header.num_frames);
+  auto clips = parse_clip_table(r, context_.header.num_frames, access_units_.memory_limit());
   if (!clips) return clips.error();
+  count_kept(bytes_of(clips_), bytes_of(*clips));
   clips_ = std::move(*clips);
   return true;
 }

@@ -107,6 +107,8 @@ class StreamReader {
  private:
   bool starts_gofs(const UnitHeader& unit) const;
   Result<bool> read_sequence_header();
+  // Counts something that is kept, in place of what was kept before.
+  void count_kept(std::uint64_t before, std::uint64_t now);
   Result<bool> read_connectivity(const UnitHeader& unit);
   Result<bool> read_vertex_order(const UnitHeader& unit);
   Result<bool> read_ancillary(const UnitHeader& unit);

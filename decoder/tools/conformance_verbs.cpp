@@ -16,6 +16,7 @@
 #include "common/io/binary_numbers.h"
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
+#include "common/json/json.h"
 #include "common/syntax/stream_format.h"
 #include "common/tools/command_line.h"
 #include "decoder/describe_error.h"
@@ -150,7 +151,7 @@ void print_verdict(const Error& error, std::uint32_t frames) {
   if (error.rule[0] != '\0') verdict["rule"] = error.rule;
   verdict["bit"] = error.bit_pos;
   verdict["frame"] = frames;
-  std::cerr << "rlpc-verdict " << verdict.dump() << "\n";
+  std::cerr << "rlpc-verdict " << json_text(verdict) << "\n";
 }
 
 int decode(const Request& request) {
@@ -182,7 +183,7 @@ int describe() {
                        {"profiles", Json::array({"baseline", "main", "high"})},
                        {"levels", levels},
                        {"outputs", Json::array({"rlpd", "f32", "rlpa"})}};
-  std::cout << answer.dump() << "\n";
+  std::cout << json_text(answer) << "\n";
   return kExitDone;
 }
 

@@ -10,6 +10,7 @@
 
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
+#include "common/json/json.h"
 #include "decoder/extract/sub_stream_extractor.h"
 #include "decoder/tools/exit_code.h"
 #include "decoder/tools/stream_message.h"
@@ -88,8 +89,7 @@ void print_json(const ExtractOptions& o, const SubStreamExtractor& cutter,
                                        {"after", size_json(cutter, bytes)},
                                        {"models", std::move(models)},
                                        {"gofs", std::move(gofs)}};
-  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;  // in the name
-  std::cout << json.dump(2, ' ', false, kReplace) << "\n";
+  std::cout << json_text(json, 2) << "\n";
 }
 
 // Of a GOF with temporal layers.

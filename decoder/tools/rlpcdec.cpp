@@ -19,9 +19,11 @@
 #include "common/io/output_file.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
+#include "common/json/json.h"
 #include "common/tools/command_line.h"
 #include "common/tools/frame_span.h"
 #include "decoder/output/frame_sink.h"
+#include "decoder/output/stream_asset.h"
 #include "decoder/player/html_verb.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/tools/chosen_frames.h"
@@ -121,7 +123,7 @@ void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& f
                         {"of_triangles", decoder.header().num_triangles}};
     }
     if (!remarks.empty()) json["remarks"] = remarks;
-    std::cout << json.dump(2) << "\n";
+    std::cout << rlpc::json_text(json, 2) << "\n";
   } else if (!o.quiet) {
     const auto plural = [](std::uint32_t n) { return n == 1 ? "" : "s"; };
     const std::string lost =
@@ -184,6 +186,19 @@ std::optional<int> write_frames(const Options& o, rlpc::Decoder& decoder,
   return std::nullopt;
 }
 
+// Returns the exit code of an asset that takes more memory in the output than is left.
+int check_asset_memory(const Options& o, const rlpc::Decoder& decoder, std::string_view asset) {
+  const rlpc::DecoderMemory memory = decoder.memory();
+  const std::uint64_t needed = memory.stream_bytes + memory.gof_bytes + memory.cached_bytes +
+                               rlpc::asset_memory_bytes(asset);
+  if (needed <= o.decoder.limits.max_memory_bytes) return rlpc::kExitDone;
+  rlpc::Error error{rlpc::Errc::kLimitExceeded, "", "asset_size"};
+  error.needed_bytes = needed;
+  return complain(rlpc::stream_message(o.input, error, o.decoder.limits) +
+                      "; frames are written without materials",
+                  rlpc::kExitLimit);
+}
+
 // Those that the output holds. Returns the exit code of an error; frames are written all the
 // same.
 int read_attributes(const Options& o, rlpc::Decoder& decoder, bool live,
@@ -200,6 +215,9 @@ int read_attributes(const Options& o, rlpc::Decoder& decoder, bool live,
       return complain(rlpc::stream_message(o.input, asset.error(), o.decoder.limits) +
                           "; frames are written without materials",
                       rlpc::exit_code(asset.error().code));
+    }
+    if (const int code = check_asset_memory(o, decoder, *asset); code != rlpc::kExitDone) {
+      return code;
     }
     options.asset = std::move(*asset);
   }

@@ -186,6 +186,8 @@ int inform(const Options& o) {
   header.num_frames = summary->num_frames();  // which an open-ended stream does not announce
   rlpc::StreamInfo info{o.input,           header,         counter, bytes, *summary,
                         stream.metadata(), stream.clips(), {}};
+  info.max_json_bytes =
+      o.max_memory_bytes - std::min(o.max_memory_bytes, stream.bytes_in_use());
   if (stream.attribute_unit() || stream.asset_unit()) {
     info.attributes = rlpc::ListedAttributes::of(**source, o.max_memory_bytes);
   }

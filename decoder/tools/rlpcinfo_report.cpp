@@ -10,6 +10,7 @@
 
 #include "common/io/clip_time.h"
 #include "common/io/messages.h"
+#include "common/json/json.h"
 #include "decoder/report/coarse_report.h"
 #include "decoder/report/html_page.h"
 #include "decoder/report/rate_report.h"
@@ -104,19 +105,12 @@ nlohmann::ordered_json json_of(const CoarseMeshes& meshes) {
   return json;
 }
 
-// Metadata is not validated: if it is not JSON, or nested too deeply, it is shown as plain
-// text.
-nlohmann::ordered_json metadata_json(const std::string& text) {
-  constexpr int kDeepest = 100;
-  bool too_deep = false;
-  const auto look = [&](int depth, nlohmann::ordered_json::parse_event_t,
-                        nlohmann::ordered_json&) {
-    too_deep = too_deep || depth > kDeepest;
-    return !too_deep;
-  };
-  auto json = nlohmann::ordered_json::parse(text, look, false);
-  if (too_deep || json.is_discarded()) return text;
-  return json;
+// Metadata is not validated: text that is not JSON, is nested too deeply, or needs more memory
+// as a tree, is shown as plain text.
+nlohmann::ordered_json metadata_json(const std::string& text, std::uint64_t max_bytes) {
+  JsonProblem problem;
+  auto json = read_json<nlohmann::ordered_json>(text, max_bytes, problem);
+  return json ? *std::move(json) : nlohmann::ordered_json(text);
 }
 
 struct Noun {
@@ -349,9 +343,8 @@ void print_json(const StreamInfo& s) {
                              {"duration", clip_seconds(h.frame_rate, clip.num_frames)}});
   }
   s.attributes.add_to(json);
-  if (!s.metadata.empty()) json["metadata"] = metadata_json(s.metadata);
-  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
-  std::cout << json.dump(2, ' ', false, kReplace) << "\n";
+  if (!s.metadata.empty()) json["metadata"] = metadata_json(s.metadata, s.max_json_bytes);
+  std::cout << json_text(json, 2) << "\n";
 }
 
 std::string frames_text(const Clip& clip) {

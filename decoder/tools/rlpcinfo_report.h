@@ -26,6 +26,7 @@ struct StreamInfo {
   ListedAttributes attributes;
   const CoarseMeshes* coarse = nullptr;     // to be listed; null: not asked for
   const PicturedFrame* pictured = nullptr;  // of a page
+  std::uint64_t max_json_bytes = 0;         // of memory for the metadata as JSON
 };
 
 // Both on standard output.

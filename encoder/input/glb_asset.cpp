@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/io/binary_numbers.h"
+#include "common/json/json.h"
 
 namespace rlpc {
 
@@ -22,19 +23,22 @@ std::string GlbAsset::glb(Json asset) {
     root["buffers"] = {{{"byteLength", binary_.size()}}};
   }
   root["asset"] = std::move(asset);
-  std::string text = root.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = json_text(root);
   text.resize((text.size() + 3) / 4 * 4, ' ');
-  std::string binary = binary_;
-  binary.resize((binary.size() + 3) / 4 * 4);
-  const std::size_t size = 12 + 8 + text.size() + (binary.empty() ? 0 : 8 + binary.size());
-  std::string file = "glTF";
+  binary_.resize((binary_.size() + 3) / 4 * 4);
+  const std::size_t size = 12 + 8 + text.size() + (binary_.empty() ? 0 : 8 + binary_.size());
+  std::string file;
+  file.reserve(size);
+  file += "glTF";
   append_u32(file, 2);
   append_u32(file, static_cast<std::uint32_t>(size));
   append_u32(file, static_cast<std::uint32_t>(text.size()));
-  file += "JSON" + text;
-  if (!binary.empty()) {
-    append_u32(file, static_cast<std::uint32_t>(binary.size()));
-    file += std::string("BIN\0", 4) + binary;
+  file += "JSON";
+  file += text;
+  if (!binary_.empty()) {
+    append_u32(file, static_cast<std::uint32_t>(binary_.size()));
+    file.append("BIN\0", 4);
+    file += binary_;
   }
   return file;
 }
@@ -47,10 +51,15 @@ std::optional<std::size_t> index_of(const Json& object, const char* name, std::s
 }
 
 std::string type_of_image(std::string_view bytes) {
-  if (bytes.starts_with("\x89PNG")) return "image/png";
-  if (bytes.starts_with("\xFF\xD8\xFF")) return "image/jpeg";
-  if (bytes.starts_with("\xABKTX 20")) return "image/ktx2";
-  return bytes.size() > 12 && bytes.compare(8, 4, "WEBP") == 0 ? "image/webp" : "";
+  const auto has = [&](std::size_t at, std::string_view word) {
+    return bytes.size() > at && bytes.substr(at).starts_with(word);
+  };
+  if (has(0, "\x89PNG")) return "image/png";
+  if (has(0, "\xFF\xD8\xFF")) return "image/jpeg";
+  if (has(0, "\xABKTX 20")) return "image/ktx2";
+  if (has(0, "RIFF") && has(8, "WEBP")) return "image/webp";
+  if (has(4, "ftypavif") || has(4, "ftypavis")) return "image/avif";
+  return has(0, "DDS ") ? "image/vnd-ms.dds" : "";
 }
 
 }  // namespace rlpc

@@ -17,7 +17,7 @@ class GlbAsset {
   // Adds bytes to the binary chunk; returns the number of their view.
   std::size_t add_view(const std::string& bytes);
   std::size_t binary_bytes() const { return binary_.size(); }
-  // The whole file; `asset` has at least a version.
+  // Returns the whole file; `asset` has at least a version.
   std::string glb(nlohmann::json asset);
 
  private:
@@ -25,7 +25,8 @@ class GlbAsset {
   std::string binary_;
 };
 
-// "image/png" and others of glTF and its extensions; empty: of another type.
+// "image/png" and others of glTF and its extensions, by the first bytes; empty: of another
+// type.
 std::string type_of_image(std::string_view bytes);
 
 // The member of an object that is a whole number below a limit; none: it is not, or not there.

@@ -1,6 +1,7 @@
 // What texture coordinates address, by the images of an asset.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,7 +10,8 @@
 
 namespace rlpc {
 
-// For each set uv0, uv1, ... that the materials of `asset` (a GLB, 7.16; empty: none) use.
-std::vector<UvUse> uses_of_uv(std::string_view asset);
+// Returns the uses of each set uv0, uv1, ... by the materials of `asset` (a GLB, 7.16; empty:
+// none). max_memory_bytes: for its JSON as a tree; if it needs more, no use is known.
+std::vector<UvUse> uses_of_uv(std::string_view asset, std::uint64_t max_memory_bytes);
 
 }  // namespace rlpc

@@ -43,7 +43,7 @@ class TexelsOfUv : public testing::Test {
   nlohmann::json& material() { return asset_.root["materials"].emplace_back(); }
   std::vector<double> texels() {
     std::vector<double> all;
-    for (const UvUse& use : uses_of_uv(asset_.glb({{"version", "2.0"}}))) {
+    for (const UvUse& use : uses_of_uv(asset_.glb({{"version", "2.0"}}), SIZE_MAX)) {
       all.push_back(use.texels);
     }
     return all;
@@ -85,8 +85,8 @@ TEST_F(TexelsOfUv, AreUnknownForOtherImages) {
 
 TEST_F(TexelsOfUv, AreNoneWithoutMaterials) {
   EXPECT_EQ(texels(), Texels{});
-  EXPECT_TRUE(uses_of_uv("").empty());
-  EXPECT_TRUE(uses_of_uv("glTF, but not really one, and no JSON in it").empty());
+  EXPECT_TRUE(uses_of_uv("", SIZE_MAX).empty());
+  EXPECT_TRUE(uses_of_uv("glTF, but not really one, and no JSON in it", SIZE_MAX).empty());
   material()["normalTexture"] = {{"index", 0}, {"texCoord", 4000000000U}};
   EXPECT_EQ(texels(), Texels{});
 }

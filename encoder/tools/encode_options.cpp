@@ -11,6 +11,7 @@
 #include "common/io/bounded_input.h"
 #include "common/io/messages.h"
 #include "common/io/output_file.h"
+#include "common/json/json.h"
 #include "common/tools/command_line.h"
 #include "common/tools/frame_span.h"
 #include "encoder/frame_gof/frame_pattern_text.h"
@@ -152,9 +153,8 @@ std::optional<InputError> read_metadata(const EncodeCommandLine& line) {
   if (metadata.starts_with("\xEF\xBB\xBF")) {
     return InputError{line.metadata_path + ": begins with a byte order mark; JSON has none"};
   }
-  // The JSON library treats a zero byte as the end of the text.
-  if (metadata.find('\0') != std::string::npos || !nlohmann::json::accept(metadata)) {
-    return InputError{line.metadata_path + ": not valid JSON in UTF-8"};
+  if (const auto problem = find_json_problem(metadata, UINT64_MAX, false)) {
+    return InputError{line.metadata_path + ": not valid metadata: " + problem->message};
   }
   return std::nullopt;
 }
@@ -168,19 +168,21 @@ std::optional<InputError> note_units(const EncodeCommandLine& line) {
                         !o.settings.attributes.dropped;
   if (!is_given && !is_known) return std::nullopt;
   std::string& metadata = line.options.settings.metadata;
-  auto json = metadata.empty() ? nlohmann::ordered_json::object()
-                               : nlohmann::ordered_json::parse(metadata);
-  if (!json.is_object()) {
+  JsonProblem problem;
+  auto json = read_json<nlohmann::ordered_json>(metadata.empty() ? "{}" : metadata,
+                                                o.settings.max_memory_bytes, problem);
+  if (!json) return InputError{line.metadata_path + ": " + problem.message};
+  if (!json->is_object()) {
     if (!is_given) return std::nullopt;
     return InputError{
         line.metadata_path +
         ": expected a JSON object, for --up-axis and --metres-per-unit to add to"};
   }
-  if (is_known && !json.contains("upAxis")) json["upAxis"] = "Y";
-  if (is_known && !json.contains("metersPerUnit")) json["metersPerUnit"] = 1;
-  if (!line.up_axis.empty()) json["upAxis"] = line.up_axis == "y" ? "Y" : "Z";
-  if (line.metres_per_unit) json["metersPerUnit"] = *line.metres_per_unit;
-  metadata = json.dump();
+  if (is_known && !json->contains("upAxis")) (*json)["upAxis"] = "Y";
+  if (is_known && !json->contains("metersPerUnit")) (*json)["metersPerUnit"] = 1;
+  if (!line.up_axis.empty()) (*json)["upAxis"] = line.up_axis == "y" ? "Y" : "Z";
+  if (line.metres_per_unit) (*json)["metersPerUnit"] = *line.metres_per_unit;
+  metadata = json_text(*json);
   return std::nullopt;
 }
 

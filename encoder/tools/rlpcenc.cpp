@@ -22,6 +22,7 @@
 #include "common/io/output_file.h"
 #include "common/io/progress_bar.h"
 #include "common/io/standard_output.h"
+#include "common/json/json.h"
 #include "encoder/frame_gof/frame_pattern_text.h"
 #include "encoder/input/axes.h"
 #include "encoder/input/frame_source.h"
@@ -250,7 +251,7 @@ int tell(const EncodeOptions& o, FrameSource& source, const Expectation& e) {
     if (o.dry_run) {
       json["dry_run"] = {{"exact", e.exact()}, {"frames_encoded", e.frames_encoded}};
     }
-    std::cout << json.dump(2) << "\n";
+    std::cout << json_text(json, 2) << "\n";
   } else if (!o.quiet && o.output != "-" && o.order_map != "-") {
     print_report(o, e);
   }
@@ -326,7 +327,7 @@ int run_live(const EncodeOptions& o) {
   if (failure) return complain(failure->message);
   const EncodeReport& report = encoded->report;
   if (o.json) {
-    std::cout << report_json(report).dump(2) << "\n";
+    std::cout << json_text(report_json(report), 2) << "\n";
   } else if (!o.quiet && o.output != "-") {
     print_report(o, {report, report.header.num_frames});
   }
@@ -414,7 +415,7 @@ int run(EncodeOptions& o) {
   if (o.settings.clips.empty()) o.settings.clips = (*source)->clips();
   if (!o.settings.attributes.dropped) {
     o.settings.asset = (*source)->asset();
-    o.settings.attributes.uv_uses = uses_of_uv(o.settings.asset);
+    o.settings.attributes.uv_uses = uses_of_uv(o.settings.asset, o.settings.max_memory_bytes);
   }
   if (o.dry_run) return run_dry(o, **source);
   const std::size_t told = (*source)->notes().size();

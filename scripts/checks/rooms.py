@@ -56,6 +56,8 @@ ROOMS = {
     "common/io": {"common", "common/mesh"},
     # Command lines of programs.
     "common/tools": {"common/io"},
+    # All reading and writing of JSON.
+    "common/json": {"common"},
     # Bits to structures; no reconstruction, no files.
     "decoder/parse": _GOFS | {"decoder/slice_cut.h"},
     "decoder/parse/sequence": _GOFS | {"decoder/parse"},
@@ -68,8 +70,8 @@ ROOMS = {
                         "common/parallel", "decoder/parse/attributes",
                         "decoder/parse/sequence/parse_asset.h", "decoder/stream",
                         "decoder/recon"},
-    "decoder/extract": _GOFS | _PARSE | {"decoder/parse/attributes"} | {"decoder/recon", "decoder/stream"} | _PUBLIC_DECODER,
-    "decoder/report": _GOFS | {"decoder/stream", "decoder/output",
+    "decoder/extract": {"common/json"} | _GOFS | _PARSE | {"decoder/parse/attributes"} | {"decoder/recon", "decoder/stream"} | _PUBLIC_DECODER,
+    "decoder/report": _GOFS | {"common/json", "decoder/stream", "decoder/output",
                                "common/skinned_gof/recon/model_recon.h"} | _PUBLIC_DECODER,
     # Attributes and vertices as programs draw them.
     "decoder/surface": {"common", "common/attributes", "common/attributes/recon", "common/mesh",
@@ -79,17 +81,18 @@ ROOMS = {
                       "common/io/float_position.h",
                       "common/mesh", "decoder/surface"} | _PUBLIC_DECODER,
     # Writers of mesh files know nothing of coding.
-    "decoder/output": {"common", "common/attributes", "common/io", "common/mesh",
+    "decoder/output": {"common", "common/attributes", "common/io", "common/json", "common/mesh",
                        "decoder/surface"},
-    "decoder/output/gltf": {"common", "common/attributes", "common/io", "common/mesh",
+    "decoder/output/gltf": {"common", "common/attributes", "common/io", "common/json",
+                            "common/mesh",
                             "decoder/output", "decoder/surface"},
     # The decoder for JavaScript.
     "decoder/js/wasm": {"common", "common/attributes", "common/bitstream", "common/io",
                         "common/mesh", "decoder/stream", "decoder/recon/prefetch.h",
                         "decoder/surface"} | _PUBLIC_DECODER,
-    "decoder/player": {"common/io", "decoder/output", "decoder/stream", "decoder/tools"}
+    "decoder/player": {"common/io", "common/json", "decoder/output", "decoder/stream", "decoder/tools"}
                       | _PUBLIC_DECODER,
-    "decoder/tools": _GOFS | {"common/io", "common/tools", "decoder/extract", "decoder/output",
+    "decoder/tools": _GOFS | {"common/io", "common/json", "common/tools", "decoder/extract", "decoder/output",
                               "decoder/player",
                               "decoder/report", "decoder/stream"} | _PUBLIC_DECODER,
     "decoder/fuzz": _GOFS | _RECON | _PARSE | {"common/testing", "decoder/stream"}
@@ -123,18 +126,19 @@ ROOMS = {
         "common/attributes/attribute_set.h", "common/io", "common/verify", "encoder/input", "encoder/input/formats", "encoder/metrics"},
     "encoder/c_api": {"common/c_api", "encoder"},
     # Readers of mesh files know nothing of coding.
-    "encoder/input": {"common", "common/attributes/attribute_set.h", "common/io", "common/mesh",
+    "encoder/input": {"common", "common/attributes/attribute_set.h", "common/io", "common/json",
+                      "common/mesh",
                       "common/syntax/stream_format.h",
                       "encoder/input/formats", "encoder/input/gltf"},
     "encoder/input/formats": {"common", "common/io", "common/mesh", "encoder/input",
                               "encoder/math/det_math.h"},
-    "encoder/input/gltf/document": {"common", "common/io", "common/mesh", "encoder/input"},
-    "encoder/input/gltf": {"common", "common/io", "common/mesh", "common/syntax/sequence_header.h",
+    "encoder/input/gltf/document": {"common", "common/io", "common/json", "common/mesh", "encoder/input"},
+    "encoder/input/gltf": {"common", "common/io", "common/json", "common/mesh", "common/syntax/sequence_header.h",
                            "encoder/input", "encoder/input/formats", "encoder/input/gltf/document",
                            "encoder/math/det_math.h"},
     "encoder/input/fuzz": {"common/testing", "encoder/input", "encoder/input/formats",
                            "encoder/input/gltf", "encoder/input/gltf/document"},
-    "encoder/tools": {"common/io", "common/syntax", "common/tools", "encoder", "encoder/input",
+    "encoder/tools": {"common/io", "common/json", "common/syntax", "common/tools", "encoder", "encoder/input",
                       "encoder/metrics", "encoder/frame_gof", "encoder/sequence",
                       "encoder/sequence/target"},
 }
@@ -167,6 +171,7 @@ _PEERS = {"draco", "meshoptimizer.h", "zfp.h"}  # other codecs, for comparisons
 LIBRARIES = {
     "common": {"zlib.h", "immintrin.h", "wasm_simd128.h"},
     FILES: {"sys"},
+    "common/json": {"nlohmann"},
     "common/tools": {"CLI"},
     "decoder": _TOOLS,
     "decoder/output/gltf": {"Eigen", "nlohmann"},

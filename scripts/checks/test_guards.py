@@ -17,6 +17,7 @@ import check_clauses  # noqa: E402
 import check_constants  # noqa: E402
 import check_float  # noqa: E402
 import check_headers_first  # noqa: E402
+import check_json  # noqa: E402
 import check_layers  # noqa: E402
 import check_rules  # noqa: E402
 import cpp_source  # noqa: E402
@@ -193,6 +194,27 @@ class Layers(RealTree):
         self.complaint(check_layers.check, "conformance/judge/grading.py",
                        lambda text: "from rlpcgen import recipe\n" + text,
                        "conformance/judge/grading.py:1", "must not import rlpcgen")
+
+
+class Json(RealTree):
+    def test_the_tree_is_clean(self):
+        self.assertEqual(check_json.check(self.root)[0], [])
+
+    def test_calls_of_the_library_are_found(self):
+        for name, line in (
+                ("encoder/input/texels.cpp", "auto a = nlohmann::json::parse(text);"),
+                ("encoder/input/texels.cpp", "auto a = Json::parse(text, nullptr, false);"),
+                ("encoder/tools/encode_options.cpp", "bool a = nlohmann::ordered_json::accept(t);"),
+                ("decoder/output/stream_asset.cpp", "auto a = GltfJson::parse(text);"),
+                ("decoder/output/stream_asset.cpp", "bool a = GltfJson::sax_parse(text, &sax);"),
+                ("decoder/tools/rlpcdec.cpp", "auto a = remarks.dump(2);"),
+                ("decoder/tools/rlpcinfo_report.cpp", "std::cout << std::setw(2) << json << 1;"),
+                ("conformance/rlpcval/rlpcval.cpp", "std::cin >> json;"),
+                ("conformance/tools/rlpccmp.cpp", "using Tree = nlohmann::json; Tree::parse(t);")):
+            with self.subTest(name=name, line=line):
+                self.assertTrue((self.root / name).is_file(), name)
+                self.complaint(check_json.check, name, lambda text, line=line: line + "\n" + text,
+                               f"{name}:1", "only common/json")
 
 
 class Float(RealTree):

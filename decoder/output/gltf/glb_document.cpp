@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/io/binary_numbers.h"
+#include "common/json/json.h"
 #include "decoder/output/mesh_bytes.h"
 
 namespace rlpc {
@@ -32,9 +33,7 @@ std::optional<OutputError> failure_of(const GlbDocument& document, const std::st
   return std::nullopt;
 }
 
-std::string glb_text(const GltfJson& root) {
-  return root.dump(-1, ' ', false, GltfJson::error_handler_t::replace);
-}
+std::string glb_text(const GltfJson& root) { return json_text(root); }
 
 std::optional<OutputError> write_glb(GlbDocument& document, OutputFile& file) {
   BinaryChunk& chunk = document.buffers.chunk();

@@ -20,7 +20,14 @@ String parse_clip_name(BitReader& r) {
 }  // namespace
 
 // 6.15 clip_table( )
-Result<Vector<Clip>> parse_clip_table(BitReader& r, std::uint32_t num_frames) {
+Result<Vector<Clip>> parse_clip_table(BitReader& r, std::uint32_t num_frames,
+                                      const MemoryLimit& memory) {
+  constexpr std::uint64_t kBytesOfByte = 60;  // of a clip whose name has one letter
+  const std::uint64_t needed = memory.bytes_in_use + kBytesOfByte * r.remaining_bytes().size();
+  if (needed > memory.max_bytes) {
+    r.fail(Errc::kLimitExceeded, "", "num_clips_minus1", r.bit_pos(), needed);
+    return *r.error();
+  }
   const std::int64_t frames = num_frames;
   Vector<Clip> clips;
   const std::uint32_t count =

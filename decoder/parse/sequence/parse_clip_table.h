@@ -7,11 +7,13 @@
 #include "common/mesh/clip.h"
 #include "common/owned.h"
 #include "common/result.h"
+#include "decoder/parse/memory_limit.h"
 
 namespace rlpc {
 
 // num_frames: of the sequence, as far as it is known. Names are not checked (R-CLP-03). Memory
 // is in proportion to the payload.
-Result<Vector<Clip>> parse_clip_table(BitReader& r, std::uint32_t num_frames);
+Result<Vector<Clip>> parse_clip_table(BitReader& r, std::uint32_t num_frames,
+                                      const MemoryLimit& memory);
 
 }  // namespace rlpc

@@ -32,7 +32,7 @@ Bytes table() {
 
 Result<std::vector<Clip>> parse(const Bytes& payload, std::uint32_t num_frames) {
   BitReader r(payload);
-  return parse_clip_table(r, num_frames);
+  return parse_clip_table(r, num_frames, {UINT64_MAX, 0});
 }
 
 TEST(ParseClipTable, GivesNamesAndFrames) {

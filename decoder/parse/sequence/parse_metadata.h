@@ -4,10 +4,11 @@
 #include "common/bitstream/bit_reader.h"
 #include "common/owned.h"
 #include "common/result.h"
+#include "decoder/parse/memory_limit.h"
 
 namespace rlpc {
 
 // The JSON text, inflated; at most kMaxMetadataBytes.
-Result<String> parse_metadata(BitReader& r);
+Result<String> parse_metadata(BitReader& r, const MemoryLimit& memory);
 
 }  // namespace rlpc

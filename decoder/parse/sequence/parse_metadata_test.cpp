@@ -20,7 +20,7 @@ const Bytes kEmpty{0x00, 0x00, 0x00, 0x00, 0x78, 0xDA, 0x03, 0x00, 0x00, 0x00, 0
 
 Result<std::string> parse(const Bytes& payload) {
   BitReader r(payload, 8);
-  return parse_metadata(r);
+  return parse_metadata(r, {UINT64_MAX, 0});
 }
 
 void expect_error(const Bytes& payload, Errc code, const std::string& rule,

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -79,13 +80,17 @@ void read_line(std::string_view keyword, TextWords& words, Mtl& material) {
   }
 }
 
-std::map<std::string, Mtl, std::less<>> read_mtl(const std::string& text) {
+// Returns what the text says of the materials that are used.
+std::map<std::string, Mtl, std::less<>> read_mtl(const SourceMaterials& materials) {
+  const std::string& text = materials.mtl;
+  const std::set<std::string_view> used(materials.names.begin(), materials.names.end());
   std::map<std::string, Mtl, std::less<>> all;
   Mtl* material = nullptr;
   for (TextWords words(text); !words.at_end(); words.next_line()) {
     const std::string_view keyword = words.next();
     if (keyword == "newmtl") {
-      material = &all[words.rest_of_words()];
+      const std::string name = words.rest_of_words();
+      material = used.contains(name) ? &all[name] : nullptr;
     } else if (material != nullptr) {
       read_line(keyword, words, *material);
     }
@@ -99,7 +104,7 @@ class AssetMaker {
       : folder_(folder), textures_(textures), max_bytes_(max_bytes) {}
 
   MaterialAsset make(const SourceMaterials& materials) {
-    const auto described = read_mtl(materials.mtl);
+    const auto described = read_mtl(materials);
     const bool describes = std::any_of(
         materials.names.begin(), materials.names.end(),
         [&](const std::string& name) { return described.find(name) != described.end(); });
@@ -200,6 +205,20 @@ class AssetMaker {
 };
 
 }  // namespace
+
+std::uint64_t material_asset_bytes(const SourceMaterials& materials) {
+  // Texts and the tree of a material with all members; of the name of a part.
+  constexpr std::uint64_t kOfMaterial = 8192;
+  constexpr std::uint64_t kOfName = 1024;
+  constexpr std::uint64_t kOfByte = 8;
+  const bool is_described = !materials.mtl.empty();
+  std::uint64_t bytes = 0;
+  for (const std::string& name : materials.names) {
+    bytes += (is_described ? kOfMaterial : kOfName) + kOfByte * name.size();
+  }
+  for (const std::string& name : materials.part_names) bytes += kOfName + kOfByte * name.size();
+  return bytes;
+}
 
 MaterialAsset make_material_asset(const SourceMaterials& materials, const std::string& folder,
                                   bool textures, std::uint64_t max_bytes) {

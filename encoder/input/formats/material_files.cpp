@@ -18,20 +18,24 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// Memory for an .mtl file, by its bytes: the text, and lists of the images that it names.
+constexpr std::uint64_t kOfMtl = 40;
+
 // Never empty, so that no file in it is "-", which is standard input.
 std::string folder_of(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   return folder.empty() ? "." : folder.string();
 }
 
-// Whether the asset has a use for an image that an .mtl file names.
-bool is_kept_texture(std::string_view mtl, std::string_view name) {
+// Returns the images that an .mtl file names and the asset has a use for.
+std::set<std::string, std::less<>> kept_textures(std::string_view mtl) {
+  std::set<std::string, std::less<>> kept;
   for (TextWords words(mtl); !words.at_end(); words.next_line()) {
     const std::string_view keyword = words.next();
     if (keyword != "map_Kd" && keyword != "map_Ke" && keyword != "norm") continue;
-    if (read_mtl_map(words).name == name) return true;
+    kept.insert(read_mtl_map(words).name);
   }
-  return false;
+  return kept;
 }
 
 // Lines as in "mtllib a.mtl b.mtl", or of one name with blanks.
@@ -54,13 +58,15 @@ std::vector<std::string> library_names(const std::string& lines, const fs::path&
 
 // Images of other uses than the asset has.
 void note_what_is_dropped(SingleMesh& mesh) {
+  constexpr std::size_t kMaxNamed = 100;
   std::string dropped;
   std::size_t count = 0;
+  const auto kept = kept_textures(mesh.materials.mtl);
   for (const std::string& texture : mesh.materials.textures) {
-    if (is_kept_texture(mesh.materials.mtl, texture)) continue;
+    if (kept.find(texture) != kept.end() || ++count > kMaxNamed) continue;
     dropped += (dropped.empty() ? "" : ", ") + printable(texture);
-    ++count;
   }
+  if (count > kMaxNamed) dropped += ", ...";
   if (count == 0) return;
   mesh.notes.push_back("dropped: " + std::to_string(count) +
                        (count == 1 ? " texture (" : " textures (") + dropped +
@@ -79,15 +85,21 @@ void note_only_names(SingleMesh& mesh) {
   if (!names.empty()) mesh.notes.push_back("does not keep " + names + ", its only name");
 }
 
-void make_asset(const std::string& path, bool textures, std::uint64_t max_memory_bytes,
-                SingleMesh& mesh) {
-  const std::uint64_t held = mesh.memory_bytes() + mesh.materials.mtl.size();
-  // Images are held up to three times while the asset is made.
-  const std::uint64_t left = (max_memory_bytes - std::min(held, max_memory_bytes)) / 3;
+// Returns an error if that takes more memory than is allowed.
+std::optional<InputError> make_asset(const std::string& path, bool textures,
+                                     std::uint64_t max_memory_bytes, SingleMesh& mesh) {
+  const std::uint64_t held = mesh.memory_bytes() + kOfMtl * mesh.materials.mtl.size() +
+                             material_asset_bytes(mesh.materials);
+  if (held > max_memory_bytes) {
+    return InputError{path + ": materials and parts: " + memory_problem(max_memory_bytes)};
+  }
+  // Images are held up to four times while the asset is made.
+  const std::uint64_t left = (max_memory_bytes - held) / 4;
   MaterialAsset made = make_material_asset(mesh.materials, folder_of(path), textures, left);
   mesh.asset = std::move(made.glb);
   for (std::string& file : made.files) mesh.material_files.push_back(std::move(file));
   for (std::string& note : made.notes) mesh.notes.push_back(std::move(note));
+  return std::nullopt;
 }
 
 }  // namespace
@@ -103,8 +115,9 @@ void read_material_text(const std::string& path, std::uint64_t max_memory_bytes,
       continue;
     }
     const std::string file = (folder / name).string();
-    const std::uint64_t held = mesh.memory_bytes() + mesh.materials.mtl.size();
-    auto text = read_whole_file(file, max_memory_bytes - std::min(held, max_memory_bytes));
+    const std::uint64_t held = mesh.memory_bytes() + kOfMtl * mesh.materials.mtl.size();
+    const std::uint64_t left = max_memory_bytes - std::min(held, max_memory_bytes);
+    auto text = read_whole_file(file, left / kOfMtl);
     if (!text) {
       mesh.notes.push_back("materials: " + text.error().message);
       continue;
@@ -149,7 +162,7 @@ InputResult<SingleMesh> read_mesh_and_materials(const std::string& path, bool te
   auto mesh = read_mesh(path, max_memory_bytes);
   if (!mesh) return mesh;
   read_material_text(path, max_memory_bytes, *mesh);
-  make_asset(path, textures, max_memory_bytes, *mesh);
+  if (const auto error = make_asset(path, textures, max_memory_bytes, *mesh)) return *error;
   if (textures) note_what_is_dropped(*mesh);
   note_only_names(*mesh);
   return mesh;

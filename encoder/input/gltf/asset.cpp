@@ -1,8 +1,10 @@
 #include "encoder/input/gltf/asset.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -30,10 +32,10 @@ void remove_textures(Json& value, const IsUnwanted& is_unwanted) {
 }
 
 // Names of extensions that occur in the document.
-void find_extensions(const Json& value, std::vector<std::string>& found) {
+void find_extensions(const Json& value, std::set<std::string>& found) {
   if (!value.is_structured()) return;
   if (value.is_object() && value.contains("extensions") && value["extensions"].is_object()) {
-    for (const auto& [name, unused] : value["extensions"].items()) found.push_back(name);
+    for (const auto& [name, unused] : value["extensions"].items()) found.insert(name);
   }
   for (const Json& member : value) find_extensions(member, found);
 }
@@ -66,7 +68,7 @@ class AssetMaker {
     GltfAsset asset;
     if (!out_.empty()) asset.glb = glb();
     asset.notes = std::move(notes_);
-    asset.files = std::move(files_);
+    asset.files.assign(files_.begin(), files_.end());
     return asset;
   }
 
@@ -75,15 +77,16 @@ class AssetMaker {
     Json& images = out_["images"];
     for (std::size_t i = 0; i < images.size(); ++i) {
       Json& image = images[i];
-      auto bytes = read_image(image, "images[" + std::to_string(i) + "]");
-      is_carried_.push_back(bytes.has_value());
-      if (!bytes) continue;
-      if (!memory_.take("images", 2 * bytes->size())) return;
-      image.erase("uri");
-      image["bufferView"] = made_.add_view(*bytes);
-      if (!image.contains("mimeType") && !type_of_image(*bytes).empty()) {
-        image["mimeType"] = type_of_image(*bytes);
+      const Image carried = image_of(i);
+      is_carried_.push_back(carried.view.has_value());
+      if (!carried.view) {
+        notes_.push_back("texture images[" + std::to_string(i) +
+                         "] is not carried: " + carried.problem);
+        continue;
       }
+      image.erase("uri");
+      image["bufferView"] = *carried.view;
+      if (!image.contains("mimeType")) image["mimeType"] = carried.type;
     }
   }
 
@@ -143,65 +146,116 @@ class AssetMaker {
     }
   }
 
-  // None: a note says why.
-  std::optional<std::string> read_image(const Json& image, const std::string& place) {
-    GltfErrors errors(file_.file.path());
-    const GltfValue value(image, errors);
-    std::vector<GltfBuffer> buffers;
+  // The bytes of an image: a part of a buffer.
+  struct Range {
+    std::uint32_t buffer = 0;
     std::uint64_t offset = 0;
-    std::optional<std::uint64_t> size;
-    std::uint32_t number = 0;
-    if (value["uri"].exists()) {
-      buffers.push_back({0, value["uri"].text()});
+    std::optional<std::uint64_t> size;  // none: to the end
+  };
+
+  struct Image {
+    std::optional<std::size_t> view;  // of the asset; none: it is not carried
+    std::string type;                 // "image/png"
+    std::string problem;              // why it is not carried
+  };
+
+  // Reads the image of a URI or a view once, however many images have it.
+  Image image_of(std::size_t number) {
+    GltfErrors errors(file_.file.path());
+    const GltfValue value = GltfValue(root_, errors)["images"][number];
+    const GltfValue uri = value["uri"];
+    const std::string text = uri.exists() ? uri.text() : "";
+    const std::uint32_t view =
+        uri.exists() || errors
+            ? 0
+            : value["bufferView"].index(GltfValue(root_, errors)["bufferViews"].size(),
+                                        "bufferViews");
+    if (errors) return {{}, "", errors.first().message};
+    const auto [known, is_new] = images_.try_emplace({text, view});
+    if (!is_new) return known->second;
+    if (uri.exists()) {
+      GltfBuffers reader({{0, text}}, file_, errors);
+      known->second = carry(reader, {}, value.path(), errors);
+    } else if (const auto range = range_of(view, errors)) {
+      if (!buffers_) buffers_.emplace(all_buffers(), file_, buffer_errors_);
+      known->second = carry(*buffers_, *range, value.path(), buffer_errors_);
     } else {
-      const GltfValue root(root_, errors);
-      const GltfValue all = root["buffers"];
-      for (std::size_t b = 0; b < all.size(); ++b) {
-        GltfBuffer& buffer = buffers.emplace_back();
-        buffer.size = all[b]["byteLength"].integer({1, GltfValue::kMaxInteger});
-        if (all[b]["uri"].exists()) buffer.uri = all[b]["uri"].text();
+      known->second.problem = errors.first().message;
+    }
+    return known->second;
+  }
+
+  // None: an error says why.
+  std::optional<Range> range_of(std::uint32_t number, GltfErrors& errors) const {
+    const GltfValue root(root_, errors);
+    const GltfValue view = root["bufferViews"][number];
+    const GltfValue buffers = root["buffers"];
+    Range range;
+    range.buffer = view["buffer"].index(buffers.size(), "buffers");
+    range.offset = view["byteOffset"].integer({0, GltfValue::kMaxInteger}, 0);
+    range.size = view["byteLength"].integer({1, GltfValue::kMaxInteger});
+    if (errors) return std::nullopt;
+    const std::uint64_t size =
+        buffers[range.buffer]["byteLength"].integer({1, GltfValue::kMaxInteger});
+    if (!errors && range.offset + *range.size > size) view.fail("a view within its buffer");
+    return errors ? std::nullopt : std::optional(range);
+  }
+
+  std::vector<GltfBuffer> all_buffers() {
+    const GltfValue all = GltfValue(root_, buffer_errors_)["buffers"];
+    std::vector<GltfBuffer> buffers(all.size());
+    for (std::size_t b = 0; b < buffers.size(); ++b) {
+      buffers[b].size = all[b]["byteLength"].integer({1, GltfValue::kMaxInteger});
+      if (all[b]["uri"].exists()) buffers[b].uri = all[b]["uri"].text();
+    }
+    return buffers;
+  }
+
+  // Adds an image to the asset. Other files stay where they are, whatever a document says of
+  // them. errors: of the reader; cleared.
+  Image carry(GltfBuffers& reader, const Range& range, const std::string& place,
+              GltfErrors& errors) {
+    constexpr std::uint64_t kLongestMagic = 16;
+    constexpr std::uint64_t kCopies = 4;  // while the asset is made
+    Image image;
+    if (reader.available(range.buffer)) {
+      const std::uint64_t size = range.size.value_or(reader.size(range.buffer));
+      std::string bytes(static_cast<std::size_t>(std::min(size, kLongestMagic)), '\0');
+      reader.read(range.buffer, range.offset, bytes);
+      image.type = type_of_image(bytes);
+      if (!errors && image.type.empty()) {
+        image.problem = file_.file.path() + ": " + place +
+                        ": the bytes there are no image that glTF knows: PNG, JPEG, WebP, "
+                        "KTX2, AVIF or DDS";
+        return image;
       }
-      const std::size_t count = root["bufferViews"].size();
-      const auto view_number = value["bufferView"].index_if_any(count, "bufferViews");
-      if (view_number) {
-        const GltfValue view = root["bufferViews"][*view_number];
-        number = view["buffer"].index(buffers.size(), "buffers");
-        offset = view["byteOffset"].integer({0, GltfValue::kMaxInteger}, 0);
-        size = view["byteLength"].integer({1, GltfValue::kMaxInteger});
-        if (!errors && offset + *size > buffers[number].size) {
-          view.fail("a view within its buffer");
-        }
-      } else {
-        value.fail("uri or bufferView");
+      if (!errors && memory_.take("images", kCopies * size)) {
+        bytes.resize(static_cast<std::size_t>(size));
+        reader.read(range.buffer, range.offset, bytes);
+        if (!errors) image.view = made_.add_view(bytes);
       }
     }
-    std::string bytes;
-    if (!errors) {
-      GltfBuffers reader(std::move(buffers), file_, errors);
-      if (reader.available(number)) {
-        bytes.resize(static_cast<std::size_t>(size.value_or(reader.size(number))));
-        reader.read(number, offset, bytes);
-        for (const std::string& path : reader.files()) files_.push_back(path);
+    if (image.view) {
+      for (const std::string& path : reader.files()) files_.insert(path);
+    } else if (errors) {
+      image.problem = errors.first().message;
+      errors = GltfErrors(file_.file.path());
+      // An image with a URI is read as a buffer.
+      constexpr std::string_view kBuffer = "buffers[0].uri";
+      const std::size_t at = image.problem.find(kBuffer);
+      if (!range.size && at != std::string::npos) {
+        image.problem.replace(at, kBuffer.size(), place + ".uri");
       }
     }
-    if (!errors) return bytes;
-    // An image with a URI is read as a buffer.
-    std::string why = errors.first().message;
-    constexpr std::string_view kBuffer = "buffers[0].uri";
-    if (const auto at = why.find(kBuffer); value["uri"].exists() && at != std::string::npos) {
-      why.replace(at, kBuffer.size(), place + ".uri");
-    }
-    notes_.push_back("texture " + place + " is not carried: " + why);
-    return std::nullopt;
+    return image;
   }
 
   // Names of the nodes that hold the parts, in the order of `part` (Table F-1).
   void add_parts() {
     std::vector<std::uint32_t> nodes;
+    std::set<std::uint32_t> known;
     for (const GltfModel::Instance& instance : model_.instances) {
-      if (std::find(nodes.begin(), nodes.end(), instance.node) == nodes.end()) {
-        nodes.push_back(instance.node);
-      }
+      if (known.insert(instance.node).second) nodes.push_back(instance.node);
     }
     bool has_name = false;
     Json parts = Json::array();
@@ -218,13 +272,12 @@ class AssetMaker {
   }
 
   std::string glb() {
-    std::vector<std::string> extensions;
+    std::set<std::string> extensions;
     find_extensions(out_, extensions);
     for (const char* const list : {"extensionsUsed", "extensionsRequired"}) {
       if (!root_.contains(list) || !root_[list].is_array()) continue;
       for (const Json& name : root_[list]) {
-        if (name.is_string() && std::find(extensions.begin(), extensions.end(),
-                                          name.get<std::string>()) != extensions.end()) {
+        if (name.is_string() && extensions.contains(name.get_ref<const std::string&>())) {
           out_[list].push_back(name);
         }
       }
@@ -245,7 +298,10 @@ class AssetMaker {
   Json& out_ = made_.root;
   std::vector<bool> is_carried_;  // [image]
   std::vector<std::string> notes_;
-  std::vector<std::string> files_;
+  std::set<std::string> files_;
+  std::map<std::pair<std::string, std::uint32_t>, Image> images_;  // by URI, or view
+  GltfErrors buffer_errors_{file_.file.path()};
+  std::optional<GltfBuffers> buffers_;  // once an image is in one
 };
 
 }  // namespace

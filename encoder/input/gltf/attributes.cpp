@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -161,19 +162,15 @@ class AttributeCollector {
       set->kind = SourceAttribute::Kind::kIntegers;
     }
     constexpr std::size_t kMost = 65535;
-    std::vector<std::uint32_t> nodes;
+    std::map<std::uint32_t, std::size_t> numbers;  // of nodes
     for (const GltfModel::Instance& instance : model_.instances) {
-      if (std::find(nodes.begin(), nodes.end(), instance.node) == nodes.end()) {
-        nodes.push_back(instance.node);
-      }
-      const auto number = std::find(nodes.begin(), nodes.end(), instance.node) - nodes.begin();
+      const std::size_t number =
+          numbers.try_emplace(instance.node, numbers.size()).first->second;
       const std::size_t m = instance.material.value_or(model_.num_materials);
       const std::size_t count = geometry_of(instance).triangles.size();
       material.values.insert(material.values.end(), count,
                              static_cast<float>(std::min(m, kMost)));
-      part.values.insert(
-          part.values.end(), count,
-          static_cast<float>(std::min<std::size_t>(static_cast<std::size_t>(number), kMost)));
+      part.values.insert(part.values.end(), count, static_cast<float>(std::min(number, kMost)));
     }
     const auto is_constant = [](const SourceAttribute& set) {
       return std::all_of(set.values.begin(), set.values.end(),

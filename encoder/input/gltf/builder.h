@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "common/json/json.h"
+
 namespace rlpc {
 
 // The document is `json`, which tests may modify freely; its only buffer is `bytes`.
@@ -70,7 +72,7 @@ class GltfBuilder {
   }
 
   std::string glb() const {
-    const std::string text = padded(with_buffer().dump(), ' ');
+    const std::string text = padded(json_text(with_buffer()), ' ');
     const std::string data = padded(bytes, '\0');
     std::string file = "glTF";
     const std::size_t size = 12 + 8 + text.size() + (data.empty() ? 0 : 8 + data.size());
@@ -82,7 +84,7 @@ class GltfBuilder {
   std::string gltf(const std::string& uri) const {
     nlohmann::json whole = with_buffer();
     whole["buffers"][0]["uri"] = uri;
-    return whole.dump();
+    return json_text(whole);
   }
 
   nlohmann::json json;

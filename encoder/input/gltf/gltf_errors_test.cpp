@@ -49,10 +49,10 @@ TEST_F(GltfErrorsTest, InconsistentContainers) {
                  "chunk 1: found a length of 44 bytes, expected at most 36");
   expect_changed(20 + json_size + 4, "JSON", "chunk 1: expected JSON in the first chunk only");
   expect_changed(20 + json_size + 4, "XXXX", "buffers[0].uri: found nothing, expected a URI");
-  expect_changed(20, "[", "not a glTF document: parse error");
+  expect_changed(20, "[", "not a glTF document: line 1, column");
   expect_text(error_of_file(put("a.glb", good + "more")), "length: found");
   expect_text(error_of_file(put("a.gltf", "")), "the file is empty");
-  expect_text(error_of_file(put("a.gltf", "solid")), "not a glTF document: parse error");
+  expect_text(error_of_file(put("a.gltf", "solid")), "not a glTF document: line 1, column");
   expect_text(error_of_file(put("a.gltf", "[1]")), "found an array of 1, expected an object");
   expect_text(error_of_file(put("a.gltf", "{}")), "asset.version: found nothing");
   expect_text(error_of_file((folder_ / "none.glb").string()), "none.glb: no such file");

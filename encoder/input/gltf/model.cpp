@@ -250,13 +250,16 @@ InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLi
     for (const std::string& what : model.dropped) list += (list.empty() ? "" : ", ") + what;
     model.notes.insert(model.notes.begin(), "dropped: " + list);
   }
+  // The asset is another tree, and its text.
+  memory.take("materials", file->document_bytes);
+  if (errors) return errors.first();
   GltfAsset asset = make_gltf_asset(*file->json, model, *file, options.textures, memory);
   if (errors) return errors.first();
   model.asset = std::move(asset.glb);
   model.notes.insert(model.notes.end(), asset.notes.begin(), asset.notes.end());
   model.files.insert(model.files.end(), asset.files.begin(), asset.files.end());
   file->json.reset();
-  memory.give_back(file->document_bytes);
+  memory.give_back(2 * file->document_bytes);
   model.memory_bytes = memory.taken() + file->file.memory_bytes();
   model.frame_rate = frame_rate;
   return model;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/io/binary_numbers.h"
+#include "common/json/json.h"
 
 namespace rlpc {
 
@@ -88,13 +89,6 @@ std::uint64_t bytes_of_document(std::string_view text) {
   return bytes;
 }
 
-// Strips the prefix with class and number from messages of the library.
-std::string message_of(const nlohmann::json::exception& error) {
-  const std::string_view text = error.what();
-  const std::size_t end = text.find("] ");
-  return std::string(end == text.npos ? text : text.substr(end + 2));
-}
-
 }  // namespace
 
 InputResult<GltfFile> open_gltf_file(const std::string& path, std::uint64_t max_memory_bytes) {
@@ -116,13 +110,13 @@ InputResult<GltfFile> open_gltf_file(const std::string& path, std::uint64_t max_
   if (!text) return text.error();
   const std::uint64_t document_bytes = bytes_of_document(*text);
   if (document_bytes > max_memory_bytes - file->memory_bytes()) return too_large;
-  // The library parses and destroys values without recursion: deep nesting is safe.
-  try {
-    auto json = std::make_shared<const nlohmann::json>(nlohmann::json::parse(*text));
-    return GltfFile{std::move(*file), std::move(json), chunks.binary, document_bytes};
-  } catch (const nlohmann::json::exception& error) {
-    return InputError{name + ": not a glTF document: " + message_of(error)};
-  }
+  JsonProblem problem;
+  auto json =
+      read_json<nlohmann::json>(*text, max_memory_bytes - file->memory_bytes(), problem);
+  if (!json && problem.kind == JsonProblem::kTooLarge) return too_large;
+  if (!json) return InputError{name + ": not a glTF document: " + problem.message};
+  return GltfFile{std::move(*file), std::make_shared<const nlohmann::json>(*std::move(json)),
+                  chunks.binary, document_bytes};
 }
 
 }  // namespace rlpc

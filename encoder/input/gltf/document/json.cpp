@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json.h"
+
 namespace rlpc {
 
 using std::to_string;
@@ -113,15 +115,14 @@ std::string GltfValue::found() const {
   if (json_->is_array()) return "an array of " + to_string(json_->size());
   if (json_->is_object()) return "an object";
   if (json_->is_string()) return gltf_quoted(json_->get<std::string>());
-  return json_->dump();
+  return json_text(*json_);
 }
 
 std::string gltf_quoted(const std::string& text) {
   constexpr std::size_t kLongest = 60;
   const bool cut = text.size() > kLongest;
-  const auto replace = nlohmann::json::error_handler_t::replace;  // a character cut in two
   const nlohmann::json shown = cut ? text.substr(0, kLongest) + "..." : text;
-  return shown.dump(-1, ' ', true, replace);
+  return json_text(shown, -1, true);
 }
 
 }  // namespace rlpc

@@ -1,4 +1,6 @@
-#include "decoder/parse/sequence/json_text.h"
+#include "common/json/json_text.h"
+
+#include <array>
 
 #include "common/owned.h"
 
@@ -7,10 +9,13 @@ namespace {
 
 class JsonScanner {
  public:
-  explicit JsonScanner(std::string_view text) : text_(text) {}
+  // shape: null: nothing is counted, and any depth is allowed.
+  explicit JsonScanner(std::string_view text, JsonShape* shape = nullptr)
+      : text_(text), shape_(shape) {}
 
   bool scan();
   std::size_t position() const { return pos_; }
+  bool is_too_deep() const { return too_deep_; }
 
  private:
   // -1 at the end.
@@ -41,11 +46,47 @@ class JsonScanner {
   bool key();
   bool begin_value(bool& complete);
   bool end_value(bool& complete);
+  bool open(char close);
+  void close();
+  void count_element();
+  void count_member(std::size_t name_bytes);
 
   std::string_view text_;
   std::size_t pos_ = 0;
-  Vector<char> open_;  // the closing brackets due; nesting depth is not limited
+  Vector<char> open_;  // the closing brackets due, if depth is not limited
+  JsonShape* shape_;
+  std::size_t depth_ = 0;
+  std::array<char, kMaxJsonDepth> due_{};               // the same, if it is
+  std::array<std::uint64_t, kMaxJsonDepth> members_{};  // so far, of the objects that are open
+  bool too_deep_ = false;
 };
+
+bool JsonScanner::open(char close) {
+  if (shape_ == nullptr) return open_.push_back(close), ++depth_, true;
+  if (depth_ == kMaxJsonDepth) return too_deep_ = true, false;
+  due_[depth_] = close;
+  members_[depth_++] = 0;
+  return true;
+}
+
+void JsonScanner::close() {
+  if (shape_ == nullptr) open_.pop_back();
+  --depth_;
+}
+
+void JsonScanner::count_element() {
+  if (shape_ == nullptr || depth_ == 0 || due_[depth_ - 1] != ']') return;
+  ++shape_->elements;
+  shape_->levels += depth_;
+}
+
+void JsonScanner::count_member(std::size_t name_bytes) {
+  if (shape_ == nullptr) return;
+  constexpr std::size_t kBytesAtOnce = 32;
+  ++shape_->members;
+  shape_->levels += depth_;
+  shape_->comparisons += members_[depth_ - 1]++ * (1 + name_bytes / kBytesAtOnce);
+}
 
 bool JsonScanner::take_digits() {
   const std::size_t first = pos_;
@@ -119,6 +160,7 @@ bool JsonScanner::string() {
 bool JsonScanner::scalar() {
   switch (next()) {
     case '"':
+      if (shape_ != nullptr) ++shape_->blocks;
       return string();
     case 't':
       return take_word("true");
@@ -133,7 +175,9 @@ bool JsonScanner::scalar() {
 
 bool JsonScanner::key() {
   skip_space();
+  const std::size_t first = pos_;
   if (!string()) return false;
+  count_member(pos_ - first);
   skip_space();
   return take(':');
 }
@@ -141,14 +185,16 @@ bool JsonScanner::key() {
 // A value, or the beginning of an array or object.
 bool JsonScanner::begin_value(bool& complete) {
   skip_space();
+  count_element();
   const bool object = next() == '{';
   if (!object && next() != '[') return complete = true, scalar();
+  if (shape_ != nullptr) ++shape_->blocks;
+  const char close_by = object ? '}' : ']';
+  if (!open(close_by)) return false;
   ++pos_;
   skip_space();
-  const char close = object ? '}' : ']';
-  complete = take(close);
-  if (complete) return true;
-  open_.push_back(close);
+  complete = take(close_by);
+  if (complete) return close(), true;
   return !object || key();
 }
 
@@ -156,10 +202,11 @@ bool JsonScanner::begin_value(bool& complete) {
 bool JsonScanner::end_value(bool& complete) {
   for (;;) {
     skip_space();
-    if (open_.empty()) return complete = true, pos_ == text_.size();
-    if (take(',')) return complete = false, open_.back() == ']' || key();
-    if (!take(open_.back())) return false;
-    open_.pop_back();
+    if (depth_ == 0) return complete = true, pos_ == text_.size();
+    const char due = shape_ == nullptr ? open_.back() : due_[depth_ - 1];
+    if (take(',')) return complete = false, due == ']' || key();
+    if (!take(due)) return false;
+    close();
   }
 }
 
@@ -179,6 +226,29 @@ std::optional<std::size_t> find_json_error(std::string_view text) {
   JsonScanner scanner(text);
   if (scanner.scan()) return std::nullopt;
   return scanner.position();
+}
+
+std::optional<JsonFault> measure_json(std::string_view text, JsonShape& shape) {
+  shape = {};
+  JsonScanner scanner(text, &shape);
+  if (scanner.scan()) return std::nullopt;
+  return JsonFault{scanner.is_too_deep(), scanner.position()};
+}
+
+// Values take 16 bytes in arrays, 48 in objects, whose capacity doubles: up to twice that, and
+// half as much again while it does. Strings, arrays and objects take 32 bytes in another block,
+// and 16 of the allocator's for that and for their contents. An object that grows copies what
+// is in it, once. Characters are in the buffer of the parser, in strings whose capacity may be
+// double, and in a copy; a text that is printed is a string that doubles, too. Each value can
+// have a line of it, and its brackets another.
+std::uint64_t json_tree_bytes(const JsonShape& shape, std::size_t text_bytes) {
+  constexpr std::uint64_t kOfElement = 64;
+  constexpr std::uint64_t kOfMember = 240;
+  constexpr std::uint64_t kOfBlock = 160;
+  constexpr std::uint64_t kOfLevel = 12;
+  constexpr std::uint64_t kOfByte = 12;
+  return kOfElement * shape.elements + kOfMember * shape.members + kOfBlock * shape.blocks +
+         kOfLevel * shape.levels + kOfByte * text_bytes;
 }
 
 }  // namespace rlpc

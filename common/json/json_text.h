@@ -1,0 +1,61 @@
+// JSON texts (RFC 8259) before they are parsed: whether they are valid, and how large the tree
+// of a parser would be. No other code scans JSON, and none parses it without this (json.h).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace rlpc {
+
+// Arrays and objects within each other. Functions that copy, compare and write trees are
+// recursive, so more would overflow the stack.
+inline constexpr std::size_t kMaxJsonDepth = 100;
+
+// Returns the offset of the first byte that makes the text invalid; none if it is valid UTF-8
+// and JSON, nested to any depth. Cost: linear in the text; a byte of memory per level.
+//
+// Note: the parser of a JSON library does not suffice. It stops at a zero byte, skips a byte
+// order mark and refuses large numbers; RFC 8259 permits only the last.
+std::optional<std::size_t> find_json_error(std::string_view text);
+
+// What the tree of a text would consist of.
+struct JsonShape {
+  std::uint64_t members = 0;      // of all objects
+  std::uint64_t elements = 0;     // of all arrays
+  std::uint64_t blocks = 0;       // values with memory of their own: strings, arrays, objects
+  std::uint64_t levels = 0;       // the depths of all members and elements together
+  std::uint64_t comparisons = 0;  // of names, where each member of an object is compared with
+                                  // all before it; long names count several times
+};
+
+struct JsonFault {
+  bool too_deep = false;     // more than kMaxJsonDepth; otherwise: not JSON
+  std::size_t position = 0;  // of the first byte that makes it so
+};
+
+// Measures a text. Returns the first fault; none: the shape is set. Cost: linear in the text;
+// no memory is allocated.
+std::optional<JsonFault> measure_json(std::string_view text, JsonShape& shape);
+
+// Returns an upper bound of the bytes that a tree of nlohmann's takes while it grows, and when
+// it is printed with an indent of up to 2.
+std::uint64_t json_tree_bytes(const JsonShape& shape, std::size_t text_bytes);
+
+// Why a text was not read.
+struct JsonProblem {
+  enum Kind : std::uint8_t { kInvalid, kTooDeep, kTooWide, kTooLarge };
+  Kind kind = kInvalid;
+  std::string message;             // "line 2, column 7: expected JSON"
+  std::uint64_t needed_bytes = 0;  // kTooLarge: memory
+};
+
+// Returns the problem of a text for a parser: invalid; nested too deeply; too many members in
+// objects, if these compare each name with all others (has_lists: ordered_map does);
+// max_bytes: the memory for the tree. Cost: linear in the text.
+std::optional<JsonProblem> find_json_problem(std::string_view text, std::uint64_t max_bytes,
+                                             bool has_lists);
+
+}  // namespace rlpc
