@@ -266,7 +266,7 @@ TEST_F(GltfErrorsTest, InvalidAnimations) {
     expect_text(error_of(good, {"Move", again}), "animations: \"Move\" is chosen twice");
   }
   expect_text(error_of(one_triangle(), {"0"}), "no \"0\" there; the file has none");
-  EXPECT_EQ(error_of(one_triangle(), {"all"}), "");
+  EXPECT_NE(error_of(one_triangle(), {"all"}).find("none there"), std::string::npos);
 }
 
 TEST_F(GltfErrorsTest, InvalidMeshes) {
