@@ -42,7 +42,7 @@ enum class FrameMode : std::uint8_t { kAuto, kLcf, kWorld };
 // The three vertices that define a local coordinate frame: a triangle of the mesh, as in the
 // paper, or distant vertices of the cluster. kTriangle: of the triangles at a vertex, the one
 // with the most stable frame. kFirst: the first of the input. kAuto: if qu and qc are set, the
-// cheaper of these two for each GOF, else distant vertices.
+// cheapest of all three for each GOF, else distant vertices.
 enum class SeedMode : std::uint8_t { kAuto, kTriangle, kSpread, kFirst };
 
 // How the distances that a vertex moves between frames, in the coordinates of a seed, add up:
@@ -184,8 +184,9 @@ struct EncoderSettings {
   // error or lossless, and is not searched for.
   bool low_delay = false;
   FrameTools frames;  // must be left at its defaults unless profile is kHigh
-  // Maximum frames per GOF; 0: 128; 4096 in the Main profile with several clips (fewer for
-  // large meshes), or 256 in the High profile; kWholeSequence: one GOF.
+  // Maximum frames per GOF; 0: 128; 256 in the High profile; in the Main profile up to 4096
+  // (fewer for large meshes) with several clips and, in encode(), where long GOFs cost less;
+  // kWholeSequence: one GOF.
   std::uint32_t gof_frames = 0;
   bool keep_order = false;  // restore the vertex order of the input
   HashMode hash_mode = HashMode::kGof;

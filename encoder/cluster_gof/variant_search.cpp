@@ -18,6 +18,7 @@ std::vector<BaselineTools> variants_of(const BaselineTools& tools) {
   if (tools.seed_mode == SeedMode::kAuto) {
     seeds = {SeedMode::kTriangle};
     if (by_seeds) seeds.push_back(SeedMode::kFirst);
+    seeds.push_back(SeedMode::kSpread);
   }
   std::vector<MotionMeasure> motions{tools.motion};
   if (tools.motion == MotionMeasure::kAuto && by_seeds) {

@@ -1,5 +1,6 @@
 // Chooses between variants of the RLPCA paper's method, which leaves some choices open: the
-// triangle at a seed, and whether the distances that vertices move are squared.
+// triangle at a seed, and whether the distances that vertices move are squared. Distant
+// vertices instead of a triangle are another variant: noise turns their frames less.
 #pragma once
 
 #include <span>

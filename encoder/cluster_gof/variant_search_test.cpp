@@ -92,7 +92,7 @@ TEST(SearchVariants, FindsOneThatNoOtherBeatsInErrorAndBitsNorTheLiteralOneInErr
     const Cost least = cost_of(coding, found.clustering);
     int same = 0;
     std::vector<Clustering> different;
-    for (const SeedMode seeds : {SeedMode::kTriangle, SeedMode::kFirst}) {
+    for (const SeedMode seeds : {SeedMode::kTriangle, SeedMode::kFirst, SeedMode::kSpread}) {
       for (const MotionMeasure motion : {MotionMeasure::kSquared, MotionMeasure::kPlain}) {
         EncoderSettings one = settings;
         one.baseline.seed_mode = seeds;
@@ -150,6 +150,8 @@ TEST(SearchVariants, IsForTheQuantisersOfThePaper) {
   EXPECT_FALSE(has_variants(settings));
   settings = paper_settings();
   settings.baseline.partition = PartitionMethod::kLloyd;
+  EXPECT_TRUE(has_variants(settings));  // triangles or distant vertices
+  settings.baseline.seed_mode = SeedMode::kSpread;
   EXPECT_FALSE(has_variants(settings));
   settings = paper_settings();
   settings.baseline.qu = settings.baseline.qc = 0;

@@ -142,8 +142,10 @@ void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
                         {"first", SeedMode::kFirst},
                         {"triangle", SeedMode::kTriangle},
                         {"spread", SeedMode::kSpread}},
-                       "Vertices that carry local coordinate frames: auto (default), first or "
-                       "triangle (the first or the most stable triangle at a vertex), spread")
+                       "Vertices that carry local coordinate frames: first or triangle (the "
+                       "first or the most stable triangle at a vertex), spread (distant "
+                       "vertices of the cluster), auto (default: spread; with --qu, the "
+                       "cheapest)")
       ->group(baseline);
   add_choice<MotionMeasure>(
       app, "--motion", t.motion,

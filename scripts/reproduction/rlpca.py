@@ -27,10 +27,11 @@ NOTE = (
     f"{BITS} bits for eigenshapes, coefficients and seed positions; the whole sequence is one group "
     "of frames; all bytes of the stream are counted. RLPCA: L components in every cluster; ORLPCA: L "
     "on average, by rate and distortion; both with the cheapest of the variants that the paper "
-    "leaves open. Main and High: the profiles of this codec, to the error of RLPCA. Times are those "
-    "of the tools, reading and checking included; published ones are those of a 2.5 GHz Pentium 4 "
-    "(RLPCA) and an Athlon64 XP 3200+ (CPCA). The paper prints t_FPS, of display while decoding, in "
-    "seconds; it is probably frames per second.")
+    "leaves open, or with distant vertices of a cluster in place of a triangle. Main and High: the "
+    "profiles of this codec, to the error of RLPCA. Times are those of the tools, reading and "
+    "checking included; published ones are those of a 2.5 GHz Pentium 4 (RLPCA) and an Athlon64 XP "
+    "3200+ (CPCA). The paper prints t_FPS, of display while decoding, in seconds; it is probably "
+    "frames per second.")
 COW_NOTE = (
     "The paper prints L = 20 in the second row of its cow, the setting of the row above at another "
     "rate; L = 10 is what the rates of both methods fit.")
