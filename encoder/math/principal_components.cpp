@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -42,6 +43,123 @@ void for_some_rows(const TrajectoryRows& rows,
     rows.write(first, some);
     use(some);
   }
+}
+
+// A quarter of the sampled frames or fewer hold the components of a wide matrix, or the sample
+// says too little.
+constexpr std::size_t kWide = 1536;    // fixed: time; 512 frames of three coordinates
+constexpr std::size_t kSampled = 512;  // fixed: time; a sixteenth of that of the narrowest
+constexpr std::size_t kMostOfSample = kSampled / 4;  // fixed: see above
+
+// Components of evenly spaced columns only, with what they leave of `min_energy` for safety.
+// None: there are too many.
+std::optional<EigenPairs> components_of_sample(const TrajectoryRows& rows, double min_energy,
+                                               double& total_energy) {
+  constexpr double kLeast = 0.25;  // fixed: energies in the sample differ from those of all
+  const std::size_t width = rows.num_frames;
+  std::vector<double> gram(kSampled * kSampled);
+  std::vector<double> sample;
+  double sampled_energy = 0.0;
+  for_some_rows(rows, [&](std::span<const double> some) {
+    for (const double x : some) total_energy += x * x;
+    sample.clear();
+    for (std::size_t row = 0; row < some.size(); row += width) {
+      for (std::size_t i = 0; i < kSampled; ++i)
+        sample.push_back(some[row + i * width / kSampled]);
+    }
+    for (const double x : sample) sampled_energy += x * x;
+    add_gram_matrix(sample, kSampled, gram);
+  });
+  const double part = static_cast<double>(kSampled) / static_cast<double>(width);
+  EigenPairs pairs =
+      leading_eigenvectors(gram, kSampled, kMostOfSample + 1,
+                           least_energy(sampled_energy, kLeast * part * min_energy));
+  if (pairs.vectors.size() > kMostOfSample) return std::nullopt;
+  return pairs;
+}
+
+// Makes vectors orthonormal, in order; leaves out those that depend on others.
+std::vector<std::vector<double>> orthonormal(std::vector<std::vector<double>> vectors) {
+  constexpr double kIndependent = 1e-10;  // fixed: of the squared length, by rounding
+  std::vector<std::vector<double>> basis;
+  for (std::vector<double>& v : vectors) {
+    const double before = squared_norm(v);
+    for (int round = 0; round < 2; ++round) {
+      for (const std::vector<double>& b : basis) {
+        double product = 0.0;
+        for (std::size_t i = 0; i < v.size(); ++i) product += v[i] * b[i];
+        subtract_multiple(product, b, v);
+      }
+    }
+    const double left = squared_norm(v);
+    if (!(left > kIndependent * before)) continue;
+    for (double& x : v) x /= std::sqrt(left);
+    basis.push_back(std::move(v));
+  }
+  return basis;
+}
+
+// The temporal vectors that the spatial ones of a sample lead to, orthonormal.
+std::vector<std::vector<double>> temporal_basis(const TrajectoryRows& rows,
+                                                const EigenPairs& of_sample) {
+  const std::size_t width = rows.num_frames;
+  const std::size_t count = of_sample.vectors.size();
+  std::vector<double> sums(count * width);  // [count][width]
+  for_some_rows(rows, [&](std::span<const double> some) {
+    const std::size_t together = some.size() / width;
+    std::vector<double> spatial(count * together);  // [count][row]
+    for (std::size_t row = 0; row < together; ++row) {
+      for (std::size_t k = 0; k < count; ++k) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < kSampled; ++i) {
+          sum += some[row * width + i * width / kSampled] * of_sample.vectors[k][i];
+        }
+        spatial[k * together + row] = sum;
+      }
+    }
+    add_matrix_product(spatial, together, some, width, sums);
+  });
+  std::vector<std::vector<double>> vectors;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto from = sums.begin() + static_cast<std::ptrdiff_t>(k * width);
+    vectors.emplace_back(from, from + static_cast<std::ptrdiff_t>(width));
+  }
+  return orthonormal(std::move(vectors));
+}
+
+// The principal components within the subspace that a sample of the columns leads to. None: a
+// sample says too little.
+std::optional<ComponentsByRow> components_in_subspace(const TrajectoryRows& rows,
+                                                      std::size_t max_components,
+                                                      double min_energy) {
+  ComponentsByRow result;
+  const auto of_sample = components_of_sample(rows, min_energy, result.total_energy);
+  if (!of_sample) return std::nullopt;
+  const std::vector<std::vector<double>> basis = temporal_basis(rows, *of_sample);
+  const std::size_t width = rows.num_frames;
+  const std::size_t count = basis.size();
+  if (count == 0) return result;
+  const std::vector<double> columns = as_columns(basis, width);
+  std::vector<double> projected;  // [num_values][count]
+  projected.reserve(rows.num_values * count);
+  std::vector<double> gram(count * count);
+  for_some_rows(rows, [&](std::span<const double> some) {
+    const std::vector<double> products = matrix_product(some, width, columns, count);
+    add_gram_matrix(products, count, gram);
+    projected.insert(projected.end(), products.begin(), products.end());
+  });
+  EigenPairs pairs = leading_eigenvectors(gram, count, max_components,
+                                          least_energy(result.total_energy, min_energy));
+  const std::size_t found = pairs.vectors.size();
+  for (const std::vector<double>& vector : pairs.vectors) {
+    std::vector<double>& temporal = result.temporal.emplace_back(width);
+    for (std::size_t k = 0; k < count; ++k) subtract_multiple(-vector[k], basis[k], temporal);
+  }
+  const std::vector<double> spatial =
+      matrix_product(projected, count, as_columns(pairs.vectors, count), found);
+  result.spatial.assign(spatial.begin(), spatial.end());
+  result.energy = std::move(pairs.values);
+  return result;
 }
 
 }  // namespace
@@ -94,6 +212,10 @@ ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_co
     return result;
   }
   if (width == 0) return result;
+  if (width > kWide) {
+    if (auto found = components_in_subspace(rows, max_components, min_energy)) return *found;
+    // Rows are read again.
+  }
   std::vector<double> gram(width * width);
   for_some_rows(rows, [&](std::span<const double> some) {
     for (const double x : some) result.total_energy += x * x;

@@ -37,11 +37,14 @@ PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
 struct TrajectoryRows {
   std::size_t num_values = 0;
   std::size_t num_frames = 0;
-  // Fills `rows` with consecutive rows, starting with row `first`; called twice for each row.
+  // Fills `rows` with consecutive rows, starting with row `first`; called two or three times
+  // for each row.
   std::function<void(std::size_t first, std::span<double> rows)> write;
 };
 
-// The same components of such a matrix; needs little memory besides the result.
+// The same components of such a matrix; needs little memory besides the result. The time is
+// quadratic in the number of frames, unless that is large and the components few: then it is
+// linear, and the components are those of a subspace that holds nearly all of their energy.
 struct ComponentsByRow {
   double total_energy = 0.0;
   std::vector<double> energy;

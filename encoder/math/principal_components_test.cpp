@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <span>
 #include <vector>
 
 namespace rlpc {
@@ -250,6 +251,41 @@ TEST(PrincipalComponents, AreDeterministic) {
   EXPECT_EQ(a.energy, b.energy);
   EXPECT_EQ(a.spatial, b.spatial);
   EXPECT_EQ(a.temporal, b.temporal);
+}
+
+// Wide matrices of which few components are wanted: by way of a sample of the columns.
+TEST(ComponentsByRow, OfAWideMatrixHaveItsEnergy) {
+  constexpr std::size_t kValues = 1600;
+  constexpr std::size_t kColumns = 1560;
+  constexpr std::size_t kRank = 6;
+  const TrajectoryMatrix m = random_matrix(11, kValues, kColumns, kRank);
+  int reads = 0;
+  const TrajectoryRows rows{kValues, kColumns, [&](std::size_t first, std::span<double> some) {
+                              if (first == 0) ++reads;
+                              for (std::size_t i = 0; i < some.size(); ++i) {
+                                some[i] = m.a[first * kColumns + i];
+                              }
+                            }};
+  const ComponentsByRow found = components_by_row(rows, 100, 1e-3);
+  EXPECT_EQ(reads, 3) << "not by a sample";
+  ASSERT_EQ(found.temporal.size(), kRank);
+  ASSERT_EQ(found.spatial.size(), kValues * kRank);
+  const PrincipalComponents exact = principal_components(m, 100, 1e-3);
+  for (std::size_t l = 0; l < kRank; ++l) {
+    EXPECT_NEAR(found.energy[l] / exact.energy[l], 1.0, 1e-6);
+    EXPECT_NEAR(dot(found.temporal[l], found.temporal[l]), 1.0, 1e-9);
+  }
+  double largest = 0.0;
+  for (std::size_t i = 0; i < kValues; ++i) {
+    for (std::size_t f = 0; f < kColumns; ++f) {
+      double sum = 0.0;
+      for (std::size_t l = 0; l < kRank; ++l) {
+        sum += double{found.spatial[i * kRank + l]} * found.temporal[l][f];
+      }
+      largest = std::max(largest, std::abs(sum - m.row(i)[f]));
+    }
+  }
+  EXPECT_LT(largest, 1e-2);
 }
 
 }  // namespace
