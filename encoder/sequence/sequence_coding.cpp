@@ -28,7 +28,7 @@ constexpr std::uint64_t kFactorsOfModel = 12;  // fixed: memory
 // Frames that can be coded at once.
 std::uint64_t frames_in_memory(const EncoderSettings& settings, std::uint32_t num_vertices,
                                std::uint64_t bytes_of_position) {
-  constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 24;  // fixed: memory
+  constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 26;  // fixed: memory
   constexpr std::uint64_t kPart = 2;  // fixed: they take at most half of the limit
   const std::uint64_t positions =
       std::min(kMostPositions, settings.max_memory_bytes / (kPart * bytes_of_position));
@@ -52,7 +52,14 @@ std::vector<Triangle> renumber(std::span<const Triangle> triangles,
 std::uint32_t longest_gof(const EncoderSettings& settings, std::uint32_t num_vertices) {
   if (settings.gof_frames > 0) return settings.gof_frames;
   if (settings.profile == Profile::kHigh) return kDefaultTrackFrames;
-  if (settings.profile != Profile::kMain || settings.clips.size() < 2) return kDefaultGofFrames;
+  return settings.clips.size() < 2 ? kDefaultGofFrames
+                                   : longest_gof_of_all(settings, num_vertices);
+}
+
+std::uint32_t longest_gof_of_all(const EncoderSettings& settings, std::uint32_t num_vertices) {
+  if (settings.gof_frames > 0) return settings.gof_frames;
+  if (settings.profile == Profile::kHigh) return kDefaultTrackFrames;
+  if (settings.profile == Profile::kBaseline) return kDefaultGofFrames;
   return static_cast<std::uint32_t>(
       std::clamp<std::uint64_t>(frames_in_memory(settings, num_vertices, kBytesOfPosition),
                                 kDefaultGofFrames, kClipFrames));
@@ -108,7 +115,7 @@ InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
   constexpr std::uint64_t kKept = 70;                        // fixed: memory
   // The rest of such a model: rest position, influences, two sets of weights of prediction.
   constexpr std::uint64_t kOfModel = 400;  // fixed: memory
-  const bool has_models = header.profile_idc >= kProfileHigh && longest_gof < header.num_frames;
+  const bool has_models = settings.profile == Profile::kHigh && longest_gof < header.num_frames;
   const std::uint64_t of_model =
       has_models ? header.num_vertices * (kOfModel + kFactorsOfModel * longest_gof) : 0;
   // Each thread has a GOF of its own, or a candidate for one; another model is in force.

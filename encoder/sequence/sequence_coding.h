@@ -37,6 +37,9 @@ inline constexpr std::uint32_t kClipFrames = kLevels[2].max_gof_frames;  // fixe
 
 // Maximum frames per GOF under the settings.
 std::uint32_t longest_gof(const EncoderSettings& settings, std::uint32_t num_vertices);
+// Maximum frames per GOF of a sequence of which all frames are known: where these are more than
+// longest_gof(), choose_longest_gof() decides.
+std::uint32_t longest_gof_of_all(const EncoderSettings& settings, std::uint32_t num_vertices);
 // Maximum frames per span: in the High profile, those of GOFs that share a skinned model, as
 // many as memory allows.
 std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header);
@@ -62,7 +65,9 @@ struct SharedSource {
 
 class SequenceCoding {
  public:
-  // Keeps a reference to the settings. All vertex indices must be below num_vertices.
+  // Keeps a reference to the settings. All vertex indices must be below num_vertices. The
+  // profile of the settings says which tools are tried; that of the header, which includes it,
+  // how they are written.
   SequenceCoding(const SequenceHeader& header, const EncoderSettings& settings,
                  std::span<const Triangle> triangles);
   SequenceCoding(const SequenceCoding&) = delete;
@@ -86,7 +91,7 @@ class SequenceCoding {
   // Keeps a reference to the frames. is_last_resort: use only that further kind.
   std::unique_ptr<GofCoder> make_coder(const GofFrames& frames, bool is_last_resort) const;
   // Whether spans can use skinned models of earlier ones.
-  bool has_models() const { return header_.profile_idc >= kProfileHigh; }
+  bool has_models() const { return settings_.profile == Profile::kHigh; }
   // GofEncoder::encode_with(), by the kind that has skinned models.
   std::optional<EncodedGof> encode_with(const KeptModel& model, const GofFrames& frames,
                                         double step, double most) const;

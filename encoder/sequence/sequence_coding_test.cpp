@@ -22,10 +22,17 @@ TEST(LongestGof, IsThatOfTheProfile) {
 TEST(LongestGof, WithSeveralClipsIsWhatMemoryAllows) {
   EncoderSettings settings = settings_of(Profile::kMain, 2);
   EXPECT_EQ(longest_gof(settings, 100), 4096);
-  EXPECT_EQ(longest_gof(settings, 1U << 14), 1024);
+  EXPECT_EQ(longest_gof(settings, 1U << 15), 2048);
   EXPECT_EQ(longest_gof(settings, 1U << 20), 128);
   settings.max_memory_bytes = std::uint64_t{300} << 20;
   EXPECT_EQ(longest_gof(settings, 1U << 10), 1024);
+}
+
+TEST(LongestGof, OfAKnownSequenceIsWhatMemoryAllows) {
+  EXPECT_EQ(longest_gof_of_all(settings_of(Profile::kMain, 0), 100), 4096);
+  EXPECT_EQ(longest_gof_of_all(settings_of(Profile::kMain, 1), 1U << 15), 2048);
+  EXPECT_EQ(longest_gof_of_all(settings_of(Profile::kBaseline, 0), 100), 128);
+  EXPECT_EQ(longest_gof_of_all(settings_of(Profile::kHigh, 0), 100), 256);
 }
 
 TEST(LongestGof, IsTheOneAskedFor) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "encoder/gof/component_cost.h"
@@ -54,18 +55,28 @@ class GofCosts {
 
   // Expected Lagrangian cost of a GOF, cached.
   double of(const GofSpan& span) {
+    // tuned: Frames of a GOF in its sample. More hardly change the estimate.
+    constexpr std::uint32_t kFrames = 16;
     const auto [place, is_new] = known_.try_emplace({span.first, span.count}, 0.0);
-    if (is_new) place->second = expected(span);
+    if (is_new) place->second = expected(span, kFrames);
     return place->second;
+  }
+  // The same for equal GOFs of at most `longest` frames, from every eighth frame, so that
+  // lengths can be compared.
+  double of_equal(std::uint32_t num_frames, std::uint32_t longest) const {
+    constexpr std::uint32_t kEvery = 8;  // fixed: 16 of 128 frames, as above
+    double sum = 0.0;
+    for (const GofSpan& span : equal_gofs(num_frames, longest)) {
+      sum += expected(span, (span.count + kEvery - 1) / kEvery);
+    }
+    return sum;
   }
 
  private:
   // Displacements of the vertices from their mean positions in a sample of frames. The sample
   // includes the first and the last frame, which reveal a cut that is slightly misplaced.
-  TrajectoryMatrix displacements(const GofSpan& span) const {
-    // tuned: Frames of a GOF in its sample. More hardly change the estimate.
-    constexpr std::uint32_t kFrames = 16;
-    const std::uint32_t count = std::min(span.count, kFrames);
+  TrajectoryMatrix displacements(const GofSpan& span, std::uint32_t most) const {
+    const std::uint32_t count = std::min(span.count, most);
     TrajectoryMatrix matrix;
     matrix.num_values = vertices_.size();
     matrix.num_frames = 3 * std::size_t{count};
@@ -89,11 +100,11 @@ class GofCosts {
     return matrix;
   }
 
-  double expected(const GofSpan& span) const {
+  double expected(const GofSpan& span, std::uint32_t most) const {
     // tuned (off: 0): Bits of a rest position, which each GOF codes anew: about five for each
     // coordinate. Without this cost, GOFs would be cut far too often.
     constexpr double kRestBits = 15.0;
-    const TrajectoryMatrix matrix = displacements(span);
+    const TrajectoryMatrix matrix = displacements(span, most);
     const double vertices = num_vertices_;
     const double values = 3.0 * span.count;
     const double scale =
@@ -168,6 +179,15 @@ void refine(GofCosts& costs, std::uint32_t longest, std::uint32_t unit, GofSpan&
   }
 }
 
+std::optional<InputError> read_all(FrameSource& source, GofCosts& costs) {
+  std::vector<float> xyz(std::size_t{source.num_vertices()} * 3);
+  for (std::uint32_t f = 0; f < source.num_frames(); ++f) {
+    if (auto error = source.read_frame(f, xyz)) return error;
+    costs.add_frame(xyz);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 InputResult<std::vector<GofSpan>> cheapest_gofs(FrameSource& source, std::uint32_t longest,
@@ -181,17 +201,37 @@ InputResult<std::vector<GofSpan>> cheapest_gofs(FrameSource& source, std::uint32
   const std::uint32_t unit = longest / kUnitsOfLongest;
   if (equal.size() < 2 || unit == 0 || num_frames > kMostFrames) return equal;
   GofCosts costs(source.num_vertices(), num_frames, step);
-  std::vector<float> xyz(std::size_t{source.num_vertices()} * 3);
-  for (std::uint32_t f = 0; f < num_frames; ++f) {
-    if (auto error = source.read_frame(f, xyz)) return *error;
-    costs.add_frame(xyz);
-  }
+  if (auto error = read_all(source, costs)) return *error;
   std::vector<GofSpan> spans = cheapest_of_units(costs, num_frames, longest, unit);
   for (std::size_t i = 1; i < spans.size(); ++i) {
     refine(costs, longest, unit, spans[i - 1], spans[i]);
   }
   const bool better = cost(costs, spans) < (1.0 - kLeastGain) * cost(costs, equal);
   return better ? std::move(spans) : std::move(equal);
+}
+
+InputResult<std::uint32_t> choose_longest_gof(FrameSource& source, std::uint32_t shortest,
+                                              std::uint32_t longest, double step) {
+  // tuned (off: 0): A length is preferred to longer ones if its expected cost is higher by at
+  // most this fraction.
+  constexpr double kWorthLength = 0.05;
+  const std::uint32_t num_frames = source.num_frames();
+  if (num_frames <= shortest || longest <= shortest) return shortest;
+  if (num_frames > kMostFrames) return longest;
+  GofCosts costs(source.num_vertices(), num_frames, step);
+  if (auto error = read_all(source, costs)) return *error;
+  std::vector<std::uint32_t> lengths{shortest};
+  while (lengths.back() < std::min(longest, num_frames)) {
+    lengths.push_back(std::min(2 * lengths.back(), longest));
+  }
+  std::vector<double> of_length;
+  for (const std::uint32_t length : lengths) {
+    of_length.push_back(costs.of_equal(num_frames, length));
+  }
+  const double least = *std::min_element(of_length.begin(), of_length.end());
+  std::size_t i = 0;
+  while (of_length[i] > (1.0 + kWorthLength) * least) ++i;
+  return lengths[i];
 }
 
 }  // namespace rlpc

@@ -20,4 +20,15 @@ namespace rlpc {
 InputResult<std::vector<GofSpan>> cheapest_gofs(FrameSource& source, std::uint32_t longest,
                                                 double step);
 
+// The most frames that a GOF should have: `shortest` or that times a power of two, at most
+// `longest`. Each GOF codes the shape again, so long ones cost less where it moves little;
+// short ones are quicker to seek in, and are preferred where they cost hardly more. Reads each
+// frame once. Very long sequences get the longest.
+//
+//   step  as above
+//
+// Errors: those of the source.
+InputResult<std::uint32_t> choose_longest_gof(FrameSource& source, std::uint32_t shortest,
+                                              std::uint32_t longest, double step);
+
 }  // namespace rlpc

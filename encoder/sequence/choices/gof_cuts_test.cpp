@@ -121,5 +121,45 @@ TEST(CheapestGofs, DividesVeryLongSequencesEquallyWithoutReading) {
   EXPECT_EQ(spans->size(), equal_gofs(100'000, 128).size());
 }
 
+TEST(ChooseLongestGof, IsLongWhereEachGofWouldOnlyCodeTheShapeAgain) {
+  Motion still(1000, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
+    return (v * 37 % 101) + 5.0 * c + (v < kVertices / 8 ? std::sin(0.05 * f) : 0.0);
+  });
+  const auto longest = choose_longest_gof(still, 128, 4096, 0.01);
+  ASSERT_TRUE(longest);
+  EXPECT_GE(*longest, 1000U);
+  const auto limited = choose_longest_gof(still, 128, 500, 0.01);
+  ASSERT_TRUE(limited);
+  EXPECT_EQ(*limited, 500U);
+}
+
+TEST(ChooseLongestGof, IsShortWhereLongOnesSaveLittle) {
+  // Random bits of a sum that mixes frame, vertex and axis.
+  Motion noise(512, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
+    std::uint32_t x = f * 2654435761U + v * 40503U + c * 97U;
+    x ^= x >> 13U;
+    x *= 2246822519U;
+    x ^= x >> 16U;
+    return x % 1000;
+  });
+  const auto longest = choose_longest_gof(noise, 128, 4096, 0.01);
+  ASSERT_TRUE(longest);
+  EXPECT_EQ(*longest, 128U);
+}
+
+TEST(ChooseLongestGof, IsTheShortestForFewFrames) {
+  Motion few(100,
+             [](std::uint32_t f, std::uint32_t v, std::uint32_t c) { return 1.0 * f + v + c; });
+  const auto longest = choose_longest_gof(few, 128, 4096, 0.01);
+  ASSERT_TRUE(longest);
+  EXPECT_EQ(*longest, 128U);
+}
+
+TEST(ChooseLongestGof, PassesOnErrorsOfTheSource) {
+  Motion broken(300, [](std::uint32_t, std::uint32_t v, std::uint32_t) { return 1.0 * v; });
+  broken.broken = 7;
+  EXPECT_FALSE(choose_longest_gof(broken, 128, 4096, 0.01));
+}
+
 }  // namespace
 }  // namespace rlpc
