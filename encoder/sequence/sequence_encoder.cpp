@@ -1,27 +1,18 @@
-// Implements encode() of encoder/rlpc_encoder.h: encodes a whole sequence to its target.
+#include "encoder/sequence/sequence_encoder.h"
+
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "common/parallel/for_each.h"
 #include "common/verify/stream_buffer.h"
 #include "encoder/math/det_math.h"
-#include "encoder/rlpc_encoder.h"
-#include "encoder/sequence/attribute_stage.h"
-#include "encoder/sequence/check_settings.h"
 #include "encoder/sequence/choices/gof_cuts.h"
-#include "encoder/sequence/choices/grid_choice.h"
 #include "encoder/sequence/choices/level_choice.h"
 #include "encoder/sequence/choices/lossless_grid.h"
-#include "encoder/sequence/gof_batch.h"
-#include "encoder/sequence/sequence_coding.h"
-#include "encoder/sequence/stream_assembly.h"
 #include "encoder/sequence/stream_verifier.h"
-#include "encoder/sequence/target_loop.h"
 
 namespace rlpc {
 namespace {
@@ -55,63 +46,26 @@ std::vector<DecodedFrame> kept_frames(const BatchTrial& trial) {
   return frames;
 }
 
-class SequenceEncoder {
- public:
-  SequenceEncoder(FrameSource& source, const EncoderSettings& settings,
-                  const Progress& progress)
-      : source_(source), settings_(settings), progress_(progress) {}
-
-  // Searches for the target; write() then writes what was found.
-  InputResult<TargetResult> find();
-  InputResult<EncodeReport> write(TargetResult best, const ByteSink& sink);
-
- private:
-  std::optional<InputError> prepare();
-  std::optional<InputError> allot_memory(const SequenceHeader& header);
-  InputResult<GridChoice> first_grid() const;
-  void use_grid(const GridChoice& grid);
-  std::optional<InputError> cut_gofs(const SequenceHeader& header);
-  InputResult<TargetResult> search();
-  std::optional<InputError> search_on_finer_grid(TargetResult& best);
-  double fixed_bits() const;
-  std::uint64_t total_bytes(const TargetResult& result);
-  std::optional<InputError> keep_to_rate(TargetResult& best);
-  std::optional<InputError> verify(const std::shared_ptr<StreamBuffer>& stream,
-                                   std::uint64_t end_of_first_gof, EncodeReport& report);
-  void show_progress(std::uint32_t trial, double done) const;
-  std::optional<InputError> measure_cuts(const BatchTrial& trial, EncodeReport& report);
-
-  FrameSource& source_;
-  const EncoderSettings& settings_;
-  const Progress& progress_;
-  bool keeps_analyses_ = true;
-  std::uint32_t num_threads_ = 1;
-  std::optional<ThreadPool> threads_;  // used in find() and write()
-  Extent extent_;
-  std::vector<GofSpan> spans_;
-  std::optional<SequenceCoding> coding_;
-  std::optional<StreamAssembly> stream_;
-  std::optional<AttributeStage> attributes_;
-  std::uint32_t trials_ = 0;    // trials of all searches so far
-  double reserved_bits_ = 0.0;  // that earlier searches for a rate did not know of
-};
+}  // namespace
 
 std::optional<InputError> SequenceEncoder::prepare() {
   SequenceHeader header;
-  header.profile_idc = static_cast<std::uint32_t>(settings_.profile);
+  header.profile_idc = static_cast<std::uint32_t>(written_);
   header.num_vertices = source_.num_vertices();
   header.num_triangles = static_cast<std::uint32_t>(source_.triangles().size());
   header.num_frames = source_.num_frames();
   header.frame_rate = source_.frame_rate();
+  if (header.num_frames > kMaxFrames) {
+    return InputError{"a sequence has at most " + std::to_string(kMaxFrames) +
+                      " frames (specification, Annex B), not " +
+                      std::to_string(header.num_frames) + "; split it"};
+  }
+  longest_gof_ = longest_gof(settings_, header.num_vertices);
   if (auto error = allot_memory(header)) return error;
   threads_.emplace(num_threads_);
+  if (auto error = survey(header)) return error;
+  threads_.emplace(num_threads_);
   const ThreadPool::Use use(*threads_);
-  const auto extent = measure_extent(source_);
-  if (!extent) return extent.error();
-  extent_ = *extent;
-  const auto grid = first_grid();
-  if (!grid) return grid.error();
-  set_grid(header, *grid);
   if (auto error = cut_gofs(header)) return error;
   if (auto error = choose_level(header, longest_gof_of(spans_))) return error;
   coding_.emplace(header, settings_, source_.triangles());
@@ -129,6 +83,18 @@ std::optional<InputError> SequenceEncoder::prepare() {
   return std::nullopt;
 }
 
+// What is chosen before memory is allotted: the grid, and how long GOFs may be.
+std::optional<InputError> SequenceEncoder::survey(SequenceHeader& header) {
+  const ThreadPool::Use use(*threads_);
+  const auto extent = measure_extent(source_);
+  if (!extent) return extent.error();
+  extent_ = *extent;
+  const auto grid = first_grid();
+  if (!grid) return grid.error();
+  set_grid(header, *grid);
+  return lengthen_gofs(header);
+}
+
 InputResult<GridChoice> SequenceEncoder::first_grid() const {
   const Target& target = settings_.target;
   if (target.kind != Target::kLossless) {
@@ -138,9 +104,31 @@ InputResult<GridChoice> SequenceEncoder::first_grid() const {
   return grid_of_bits(extent_, static_cast<int>(target.value));
 }
 
+std::uint32_t SequenceEncoder::longest_span_of(const SequenceHeader& header) const {
+  return settings_.profile == Profile::kHigh ? longest_span(settings_, header) : longest_gof_;
+}
+
+// In the unit of the coordinates.
+double SequenceEncoder::likely_step(const SequenceHeader& header) const {
+  return search_for(settings_, header, extent_.rms_spread).step() *
+         exact_exp2(header.grid.log2_step);
+}
+
+// Lets GOFs be longer than usual where that costs less and memory allows it.
+std::optional<InputError> SequenceEncoder::lengthen_gofs(const SequenceHeader& header) {
+  const std::uint32_t usual = longest_gof_;
+  const auto longest = choose_longest_gof(
+      source_, usual, longest_gof_of_all(settings_, header.num_vertices), likely_step(header));
+  if (!longest) return longest.error();
+  longest_gof_ = *longest;
+  if (longest_gof_ == usual || !allot_memory(header)) return std::nullopt;
+  longest_gof_ = usual;
+  return allot_memory(header);
+}
+
 // Analyses are kept if there is memory for them.
 std::optional<InputError> SequenceEncoder::allot_memory(const SequenceHeader& header) {
-  const std::uint32_t largest = std::min(longest_span(settings_, header), header.num_frames);
+  const std::uint32_t largest = std::min(longest_span_of(header), header.num_frames);
   const auto threads = [&](bool keeps) {
     return check_memory(settings_, header, largest, keeps ? header.num_frames : 0,
                         source_.memory_bytes());
@@ -161,23 +149,17 @@ std::optional<InputError> SequenceEncoder::allot_memory(const SequenceHeader& he
 // Divides the sequence into spans: by expected cost, or of equal length with preset fast and in
 // the Baseline profile. A span is a GOF or, in the High profile, several.
 std::optional<InputError> SequenceEncoder::cut_gofs(const SequenceHeader& header) {
-  const std::uint32_t longest = longest_span(settings_, header);
-  if (header.num_frames > kMaxFrames) {
-    return InputError{"a sequence has at most " + std::to_string(kMaxFrames) +
-                      " frames (specification, Annex B), not " +
-                      std::to_string(header.num_frames) + "; split it"};
-  }
-  if (!header.has_skinned_gofs() || settings_.preset == Preset::kFast ||
+  const std::uint32_t longest = longest_span_of(header);
+  if (settings_.profile == Profile::kBaseline || settings_.preset == Preset::kFast ||
       settings_.usable_kinds() == KindChoice::kFrames) {
     spans_ = equal_gofs(header.num_frames, longest);
-    divide_spans(spans_, longest_gof(settings_, header.num_vertices));
+    divide_spans(spans_, longest_gof_);
     return std::nullopt;
   }
-  const double step = search_for(settings_, header, extent_.rms_spread).step();
-  auto spans = cheapest_gofs(source_, longest, step * exact_exp2(header.grid.log2_step));
+  auto spans = cheapest_gofs(source_, longest, likely_step(header));
   if (!spans) return spans.error();
   spans_ = std::move(*spans);
-  divide_spans(spans_, longest_gof(settings_, header.num_vertices));
+  divide_spans(spans_, longest_gof_);
   return std::nullopt;
 }
 
@@ -196,19 +178,60 @@ void SequenceEncoder::show_progress(std::uint32_t trial, double done) const {
                 : done);
 }
 
-InputResult<TargetResult> SequenceEncoder::search() {
+TargetTask SequenceEncoder::task(const EncoderSettings& settings) const {
+  return {.settings = settings,
+          .header = coding_->header(),
+          .rms_spread = extent_.rms_spread,
+          .fixed_bits = fixed_bits(),
+          .progress = [this](std::uint32_t trial, double done) { show_progress(trial, done); }};
+}
+
+// Whether searches take some tenths of a second. They are then never given up: where streams
+// have few bytes, sizes and errors jump from one step to the next.
+bool SequenceEncoder::is_small() const {
+  constexpr std::uint64_t kSmall = std::uint64_t{1} << 15;  // fixed: time; vertices of frames
   const SequenceHeader& header = coding_->header();
-  GofBatch batch(*coding_, source_, spans_,
-                 {.keep_analyses = keeps_analyses_,
-                  .kept_frames = attributes_->frames(),
-                  .together = spans_together(header, longest_gof_of(spans_), num_threads_)});
-  const auto progress = [&](std::uint32_t trial, double done) { show_progress(trial, done); };
-  auto best = reach_target({.settings = settings_,
-                            .header = header,
-                            .rms_spread = extent_.rms_spread,
-                            .fixed_bits = fixed_bits(),
-                            .progress = progress},
-                           batch);
+  return std::uint64_t{header.num_vertices} * header.num_frames <= kSmall;
+}
+
+// Whether the search has no prospect, from a first encoding of a sample of the spans with the
+// fast preset.
+InputResult<bool> SequenceEncoder::is_hopeless(const Rival& rival) {
+  // tuned (off: 1): A search is not begun where a sample takes more bytes than the best result,
+  // at equal error, by this factor.
+  constexpr double kFarLow = 1.6;
+  // tuned (off: 1): The same where ranks are high: the number of clusters then counts for most,
+  // and the fast preset, with which the sample is encoded, does not search it.
+  constexpr double kFarHigh = 3.0;
+  constexpr std::size_t kPart = 4;  // fixed: a quarter of the spans, but at least one
+  const SequenceHeader& header = coding_->header();
+  // The High profile has all tools of the Main profile, and shares what these repeat. Chance
+  // can be on either side where neither has a good basis.
+  if (settings_.profile == Profile::kMain && !rival.has_high_rank()) return true;
+  EncoderSettings fast = settings_;
+  fast.preset = Preset::kFast;
+  const SequenceCoding coding(header, fast, source_.triangles());
+  const std::size_t count = std::max<std::size_t>(spans_.size() / kPart, 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const GofSpan& span = spans_[(2 * i + 1) * spans_.size() / (2 * count)];
+    GofBatch batch(coding, source_, {span}, {});
+    const auto trial = first_trial(task(fast), batch);
+    if (!trial) return trial.error();
+    const double far = rival.has_high_rank() ? kFarHigh : kFarLow;
+    if (!rival.is_out_of_reach(*trial, span.first, far)) return false;
+  }
+  return true;
+}
+
+InputResult<TargetResult> SequenceEncoder::search(const Rival* rival) {
+  GofBatch batch(
+      *coding_, source_, spans_,
+      {.keep_analyses = keeps_analyses_,
+       .kept_frames = attributes_->frames(),
+       .together = spans_together(coding_->header(), longest_gof_of(spans_), num_threads_)});
+  TargetTask whole = task(settings_);
+  whole.rival = rival;
+  auto best = reach_target(whole, batch);
   if (best) trials_ += best->trials;
   return best;
 }
@@ -259,7 +282,7 @@ std::optional<InputError> SequenceEncoder::keep_to_rate(TargetResult& best) {
       break;
     }
     reserved_bits_ += excess;
-    auto again = search();
+    auto again = search(nullptr);
     if (!again) return again.error();
     best = std::move(*again);
   }
@@ -275,7 +298,7 @@ std::optional<InputError> SequenceEncoder::search_on_finer_grid(TargetResult& be
   if (grid.position_bits <= header.position_bits) return std::nullopt;
   const GridChoice before{header.grid, header.position_bits};
   use_grid(grid);
-  auto finer = search();
+  auto finer = search(nullptr);
   if (!finer) return finer.error();
   if (finer->met >= best.met &&
       finer->trial.metrics.kg_error_percent < best.trial.metrics.kg_error_percent) {
@@ -355,95 +378,32 @@ std::optional<InputError> SequenceEncoder::measure_cuts(const BatchTrial& trial,
   return std::nullopt;
 }
 
-InputResult<TargetResult> SequenceEncoder::find() {
+std::uint64_t SequenceEncoder::bytes_of(const TargetResult& result) const {
+  std::vector<GofEntry> gofs;
+  for (const CodedGof& span : result.trial.gofs) {
+    for (const GofBytes& gof : span.gofs) gofs.push_back({gof.num_frames, gof.size()});
+  }
+  return stream_->overhead_bytes() + result.trial.gof_bytes +
+         stream_->index_bytes(std::move(gofs));
+}
+
+InputResult<TargetResult> SequenceEncoder::find(const Rival* rival) {
   if (auto error = prepare()) return *error;
   const ThreadPool::Use use(*threads_);
-  auto best = search();
-  if (best && settings_.target.kind == Target::kBpvf) {
+  if (is_small()) rival = nullptr;
+  if (rival != nullptr) {
+    const auto gives_up = is_hopeless(*rival);
+    if (!gives_up) return gives_up.error();
+    TargetResult none;
+    none.given_up = true;
+    if (*gives_up) return none;
+  }
+  auto best = search(rival);
+  if (best && !best->given_up && settings_.target.kind == Target::kBpvf) {
     if (auto error = search_on_finer_grid(*best)) return *error;
     if (auto error = keep_to_rate(*best)) return *error;
   }
   return best;
-}
-
-// Whether a result is at least as good as another.
-bool is_as_good(const TargetResult& result, const TargetResult& other, Target::Kind kind) {
-  if (result.met != other.met) return result.met;
-  if (kind != Target::kBpvf) return result.trial.gof_bytes <= other.trial.gof_bytes;
-  return result.trial.metrics.kg_error_percent <= other.trial.metrics.kg_error_percent;
-}
-
-// The searches of preset slow. Its own choices, which are better for each GOF, may by chance be
-// worse at the target than those of preset medium; and one GOF worse than several.
-std::vector<EncoderSettings> slow_searches(const EncoderSettings& settings,
-                                           std::uint32_t num_vertices,
-                                           std::uint32_t num_frames) {
-  std::vector<EncoderSettings> searches{settings};
-  if (settings.gof_frames >= num_frames && num_frames > 1) {
-    EncoderSettings& several = searches.emplace_back(settings);
-    several.gof_frames = 0;
-    several.gof_frames =
-        std::min(longest_gof(several, num_vertices), num_frames - num_frames / 2);
-  }
-  std::vector<EncoderSettings> usual = searches;
-  for (EncoderSettings& search : usual) search.preset = Preset::kMedium;
-  searches.insert(searches.end(), usual.begin(), usual.end());
-  return searches;
-}
-
-// Preset slow keeps the best result of several searches.
-InputResult<EncodeReport> encode_slowly(FrameSource& source, const EncoderSettings& settings,
-                                        const ByteSink& sink, const Progress& progress) {
-  const std::vector<EncoderSettings> searches =
-      slow_searches(settings, source.num_vertices(), source.num_frames());
-  constexpr double kSlowPart = 3.0;  // fixed: of the time, about, in usual searches
-  const auto part_of = [](const EncoderSettings& search) {
-    return search.preset == Preset::kSlow ? kSlowPart : 1.0;
-  };
-  double all = 0.0;
-  for (const EncoderSettings& search : searches) all += part_of(search);
-  double before = 0.0;
-  double part = 0.0;
-  const Progress of_search = [&](double done) { progress((before + part * done) / all); };
-  std::unique_ptr<SequenceEncoder> best;
-  std::optional<TargetResult> result;
-  for (const EncoderSettings& search : searches) {
-    before += part;
-    part = part_of(search);
-    auto encoder =
-        std::make_unique<SequenceEncoder>(source, search, progress ? of_search : progress);
-    auto found = encoder->find();
-    if (!found) return found.error();
-    if (!result || !is_as_good(*result, *found, settings.target.kind)) {
-      best = std::move(encoder);
-      result = std::move(*found);
-    }
-  }
-  return best->write(std::move(*result), sink);
-}
-
-}  // namespace
-
-InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& settings,
-                                 const ByteSink& sink, const Progress& progress) {
-  if (auto error = check_settings(settings)) return *error;
-  if (auto error = check_clips(settings.clips, source.num_frames())) return *error;
-  if (auto error = check_attributes(settings.attributes, source.attributes())) return *error;
-  if (settings.target.kind == Target::kMaxError) {
-    const auto rounding = check_rounding(source, settings.target.value);
-    if (!rounding) return rounding.error();
-  }
-  InputResult<EncodeReport> report = [&]() -> InputResult<EncodeReport> {
-    if (settings.preset == Preset::kSlow && settings.target.has_search()) {
-      return encode_slowly(source, settings, sink, progress);
-    }
-    SequenceEncoder encoder(source, settings, progress);
-    auto best = encoder.find();
-    if (!best) return best.error();
-    return encoder.write(std::move(*best), sink);
-  }();
-  if (report && progress) progress(1.0);
-  return report;
 }
 
 }  // namespace rlpc

@@ -47,28 +47,41 @@ bool fits_level(const TargetTask& task, const BatchTrial& trial) {
   });
 }
 
-InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
-                                       std::uint32_t trials_before) {
-  TargetSearch search = search_for(task.settings, task.header, task.rms_spread);
-  if (task.header.profile_idc >= kProfileHigh) search.set_costly();
-  std::uint32_t trials = trials_before;
-  const auto progress_of = [&](std::uint32_t trial) {
-    return [&task, trial](double done) {
-      if (task.progress) task.progress(trial, done);
-    };
+GofBatch::Progress progress_of(const TargetTask& task, std::uint32_t trial) {
+  return [&task, trial](double done) {
+    if (task.progress) task.progress(trial, done);
   };
+}
+
+InputResult<TargetSearch> begin_search(const TargetTask& task, GofBatch& batch,
+                                       std::uint32_t trials) {
+  TargetSearch search = search_for(task.settings, task.header, task.rms_spread);
+  if (task.settings.profile == Profile::kHigh) search.set_costly();
   if (task.first_step > 0.0) {
     search.begin_at(task.first_step);
   } else if (task.settings.target.kind == Target::kKg) {
-    if (auto error = batch.analyse(search.analysis_step(), progress_of(trials + 1)))
-      return *error;
+    const auto progress = progress_of(task, trials + 1);
+    if (auto error = batch.analyse(search.analysis_step(), progress)) return *error;
     if (const auto expected = expected_kg(task, batch)) search.begin_at(expected);
   }
+  return search;
+}
+
+// tuned (off: 1): A search is given up where an encoding takes more bytes than the best result,
+// at equal error, by this factor.
+constexpr double kFarAll = 1.05;
+
+InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
+                                       std::uint32_t trials_before) {
+  auto begun = begin_search(task, batch, trials_before);
+  if (!begun) return begun.error();
+  TargetSearch& search = *begun;
+  std::uint32_t trials = trials_before;
   std::optional<TargetResult> best;
   std::uint64_t bytes = 0;
   while (!search.finished()) {
     ++trials;
-    auto trial = batch.encode(search.step(), search.analysis_step(), progress_of(trials));
+    auto trial = batch.encode(search.step(), search.analysis_step(), progress_of(task, trials));
     if (!trial) return trial.error();
     const double value = measured(task, *trial, batch.num_frames());
     const bool better = search.report(value, trial->gof_bytes, expected_kg(task, batch));
@@ -76,8 +89,10 @@ InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
     const bool is_stuck =
         !search.met() && batch.uses_earlier_models() && trial->gof_bytes == bytes;
     bytes = trial->gof_bytes;
+    const bool is_hopeless = task.rival && task.rival->is_out_of_reach(*trial, 0, kFarAll);
     if (better || !best) best = TargetResult{std::move(*trial), search.last_step(), value};
-    if (is_stuck) break;
+    best->given_up = is_hopeless;
+    if (is_stuck || is_hopeless) break;
   }
   best->met = search.met();
   best->trials = trials;
@@ -98,7 +113,7 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
   // factor. Its rest positions then cost more, and leave less for trajectories whose residuals
   // are not chosen by rate.
   constexpr double kFinerFast = 1.25;
-  const bool fast = header.has_skinned_gofs() && settings.preset == Preset::kFast;
+  const bool fast = settings.profile != Profile::kBaseline && settings.preset == Preset::kFast;
   const double finer = fast ? kFinerFast : 1.0;
   const AnalysisRange range{.finest = finer / kAnalysisServes,
                             .made_for = finer,
@@ -111,7 +126,7 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch) {
   auto best = search_steps(task, batch, 0);
   for (const auto& change : {&GofBatch::use_own_models, &GofBatch::use_last_resort}) {
-    if (!best || best->met || !(batch.*change)()) continue;
+    if (!best || best->met || best->given_up || !(batch.*change)()) continue;
     auto other = search_steps(task, batch, best->trials);
     if (!other) return other;
     const std::uint32_t trials = other->trials;
@@ -120,6 +135,12 @@ InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch) 
     best->trials = trials;
   }
   return best;
+}
+
+InputResult<BatchTrial> first_trial(const TargetTask& task, GofBatch& batch) {
+  const auto search = begin_search(task, batch, 0);
+  if (!search) return search.error();
+  return batch.encode(search->step(), search->analysis_step(), progress_of(task, 1));
 }
 
 }  // namespace rlpc

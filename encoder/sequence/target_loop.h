@@ -6,6 +6,7 @@
 
 #include "encoder/rlpc_encoder.h"
 #include "encoder/sequence/gof_batch.h"
+#include "encoder/sequence/rival.h"
 #include "encoder/sequence/target/target_search.h"
 
 namespace rlpc {
@@ -22,6 +23,7 @@ struct TargetTask {
   double fixed_bits = 0.0;   // bits outside the GOFs that count towards a rate
   double first_step = 0.0;   // step of the first trial, grid steps; 0: chosen by the search
   bool keeps_level = false;  // reject a last resort that needs a higher level than the header
+  const Rival* rival = nullptr;  // what must be beaten; null: none
   // Called with the number of the trial, from 1, and the fraction of it that is done.
   std::function<void(std::uint32_t trial, double done)> progress = {};
 };
@@ -32,10 +34,14 @@ struct TargetResult {
   double measured = 0.0;  // its error or rate, in the unit of the target
   bool met = false;       // it does not exceed the target
   std::uint32_t trials = 0;
+  bool given_up = false;  // the search, as it had no prospect of beating the rival
 };
 
 // Runs the search. If it misses the target, searches again without skinned models of earlier
 // spans, then with the last resort of the batch. Errors: those of the batch.
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch);
+
+// The first encoding of that search. Errors: those of the batch.
+InputResult<BatchTrial> first_trial(const TargetTask& task, GofBatch& batch);
 
 }  // namespace rlpc
