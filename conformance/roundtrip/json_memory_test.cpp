@@ -21,7 +21,9 @@ std::size_t peak_of(const std::string& text) {
   JsonProblem problem;
   const auto tree = read_json<Json>(text, UINT64_MAX, problem);
   EXPECT_TRUE(tree) << problem.message;
-  if (tree) EXPECT_FALSE(json_text(*tree, 2).empty());
+  if (tree) {
+    EXPECT_FALSE(json_text(*tree, 2).empty());
+  }
   return memory_count.peak - before;
 }
 

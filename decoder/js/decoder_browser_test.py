@@ -6,8 +6,10 @@
 Exit code: 0 passed, 1 failed, 77 if all was skipped.
 """
 
+import collections
 import hashlib
 import pathlib
+import random
 import shutil
 import sys
 
@@ -17,6 +19,8 @@ from player_testing import ELEPHANT, STREAMS, float_frames, main, run  # noqa: E
 from stream_server import StreamServer  # noqa: E402
 
 HEAD, TAIL = 16384, 4096  # what open() loads first
+LIES = 40  # servers of the test with wrong replies
+KINDS = ("truncated", "invalid", "unsupported", "limit", "source", "network")  # of their errors
 
 
 class Decoder(InScene):
@@ -73,6 +77,41 @@ class Decoder(InScene):
             return Math.max(...geometry.attributes.normal.array.map((x, i) =>
               Math.abs(x - normals[i])));""")
         self.assertLess(deviation, 1e-3)
+
+    def test_lying_servers_end_in_errors_or_right_frames(self):
+        """Most replies are wrong; each call settles, and what is a frame is the right one."""
+        hashes = [self.hash_of(f) for f in range(60)]
+        outcomes = collections.Counter()
+        for seed in range(LIES):
+            self.server.lies = random.Random(seed)
+            told = self.run_script(f"""
+                const settled = (promise) => Promise.race([promise.then((value) => ({{ value }}),
+                  (error) => ({{ error: String(error), kind: error.kind ?? '' }})),
+                  new Promise((done) => setTimeout(() => done({{ error: 'hangs' }}), 20000))]);
+                const opened = await settled(RlpcDecoder.open('walk.rlpc?{seed}'));
+                if (opened.error) return [opened];
+                const told = [];
+                for (const n of [0, 31, 59, 12, 12, 40]) {{
+                  const got = await settled(opened.value.frame(n));
+                  told.push(got.error ? got : {{ n, hash: await sha256(got.value.positions) }});
+                }}
+                opened.value.close();
+                return told;""")
+            for one in told:
+                if "hash" in one:
+                    self.assertEqual(one["hash"], hashes[one["n"]], f"seed {seed}")
+                    outcomes["frame"] += 1
+                else:
+                    self.assertNotEqual(one["error"], "hangs", f"seed {seed}")
+                    self.assertIn(one["kind"], KINDS, f"seed {seed}: {one['error']}")
+                    outcomes["error"] += 1
+        self.assertGreater(min(outcomes["frame"], outcomes["error"]), 10, outcomes)
+        self.server.lies = None
+        self.assertEqual(self.run_script("""
+            const decoder = await RlpcDecoder.open('walk.rlpc');
+            const { positions } = await decoder.frame(59);
+            decoder.close();
+            return sha256(positions);"""), hashes[59])
 
     def test_a_seek_loads_one_gof(self):
         gof = self.stream.stat().st_size / 20
