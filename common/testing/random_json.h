@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <random>
 #include <string>
 
 namespace rlpc {
 
 class RandomJson {
  public:
-  explicit RandomJson(std::uint32_t seed) : random_(seed) {}
+  explicit RandomJson(std::uint32_t seed) : state_(seed) {}
 
   // A valid text of about `bytes` bytes, nested at most max_depth levels deep.
   std::string text(std::size_t bytes, int max_depth) {
@@ -25,7 +24,12 @@ class RandomJson {
   }
 
  private:
-  std::size_t below(std::size_t n) { return random_() % n; }
+  // Linear congruential (Numerical Recipes), without its weak low bits.
+  std::uint32_t next() {
+    state_ = state_ * 1664525U + 1013904223U;
+    return state_ >> 8;
+  }
+  std::size_t below(std::size_t n) { return next() % n; }
 
   std::string word(std::size_t bytes) {
     static constexpr const char* kLetters[] = {"a", "\\n", "\\u00e4", "\xC3\xA4", "\\\"", " "};
@@ -49,7 +53,7 @@ class RandomJson {
       case 1:
         return word(below(60));
       default:
-        return "\"" + std::to_string(random_()) + "\"";
+        return "\"" + std::to_string(next()) + "\"";
     }
   }
 
@@ -105,7 +109,7 @@ class RandomJson {
     out += is_object ? '}' : ']';
   }
 
-  std::mt19937 random_;
+  std::uint32_t state_;
 };
 
 }  // namespace rlpc

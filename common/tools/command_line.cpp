@@ -132,28 +132,6 @@ std::size_t mesh_of_cache(const std::vector<std::string>& meshes, const std::str
   return meshes.back().ends_with(".rlpc") ? 0 : meshes.size() - 1;
 }
 
-// Complains of point caches that stand after a mesh, without their option; "": there are none.
-std::string point_cache_text(const CLI::App& app) {
-  if (app.get_option_no_throw("--points") == nullptr) return "";
-  std::vector<std::string> options{"--points"};
-  if (app.get_option_no_throw("--points-b") != nullptr) options = {"--points-a", "--points-b"};
-  std::vector<std::string> meshes;
-  std::vector<std::string> caches;
-  std::string meant;
-  for (const std::string& word : plain_words(app)) {
-    if (meshes.empty() || !(word.ends_with(".pc2") || word.ends_with(".mdd"))) {
-      meshes.push_back(word);
-      continue;
-    }
-    caches.push_back(word);
-    const std::size_t number = std::min(mesh_of_cache(meshes, word), options.size() - 1);
-    meant += " " + options[number] + " " + word;
-  }
-  if (caches.empty()) return "";
-  return "unexpected argument" + std::string(caches.size() == 1 ? " " : "s ") +
-         CLI::detail::join(caches, " ") + "; did you mean" + meant + "?";
-}
-
 std::string surplus_text(const CLI::App& app, const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (!word.starts_with("-")) continue;
@@ -161,7 +139,7 @@ std::string surplus_text(const CLI::App& app, const std::vector<std::string>& wo
     return "unknown option " + word +
            (similar.empty() ? "" : "; did you mean " + similar + "?");
   }
-  std::string of_caches = point_cache_text(app);
+  std::string of_caches = point_cache_advice(app);
   if (!of_caches.empty()) return of_caches;
   const bool has_points = app.get_option_no_throw("--points") != nullptr;
   return "unexpected argument" + std::string(words.size() == 1 ? " " : "s ") +
@@ -202,6 +180,27 @@ std::vector<std::string> without_taken_arguments(CLI::App& app,
 }
 
 }  // namespace
+
+std::string point_cache_advice(const CLI::App& app) {
+  if (app.get_option_no_throw("--points") == nullptr) return "";
+  std::vector<std::string> options{"--points"};
+  if (app.get_option_no_throw("--points-b") != nullptr) options = {"--points-a", "--points-b"};
+  std::vector<std::string> meshes;
+  std::vector<std::string> caches;
+  std::string meant;
+  for (const std::string& word : plain_words(app)) {
+    if (meshes.empty() || !(word.ends_with(".pc2") || word.ends_with(".mdd"))) {
+      meshes.push_back(word);
+      continue;
+    }
+    caches.push_back(word);
+    const std::size_t number = std::min(mesh_of_cache(meshes, word), options.size() - 1);
+    meant += " " + options[number] + " " + word;
+  }
+  if (caches.empty()) return "";
+  return "unexpected argument" + std::string(caches.size() == 1 ? " " : "s ") +
+         CLI::detail::join(caches, " ") + "; did you mean" + meant + "?";
+}
 
 void add_help(CLI::App& app, HelpText text, const std::string& version) {
   app.set_help_flag("-h,--help", "The options most used")->group("Help");

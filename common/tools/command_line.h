@@ -24,4 +24,8 @@ void add_help(CLI::App& app, HelpText text, const std::string& version);
 // 64 after an error, which is reported on standard error.
 std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv);
 
+// Returns what to say of point caches that stand after a mesh, without their option; "": there
+// are none. To be called after parse_command_line().
+std::string point_cache_advice(const CLI::App& app);
+
 }  // namespace rlpc

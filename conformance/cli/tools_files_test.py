@@ -294,7 +294,7 @@ class Names(ToolsTest):
                     (2, "rlpccmp", none, none),
                     (4, "rlpcdec", self.path("a.rlpc"), "-o", none / "a.rlpd"),
                     (64, "rlpcdec", self.path("a.rlpc"), "--frames", bad, "--verify"),
-                    (64, "rlpcenc", none, none, "-o", out), (64, "rlpcenc", none, "--kg", bad),
+                    (1, "rlpcenc", none, none, "-o", out), (64, "rlpcenc", none, "--kg", bad),
                     (64, "rlpcenc", none, "-o", out, "--gof", bad),
                     (64, "rlpcinfo", none, "--extract", bad, "-o", out),
                     (64, "rlpcval", "--explain", bad), (64, "rlpccmp", none, none, bad)):

@@ -98,7 +98,6 @@ class Help(ToolsTest):
                 ("rlpccmp", ["a", "b", "a.mdd"], "did you mean --points-a a.mdd?"),
                 ("rlpccmp", ["cow.obj", "cow.pc2", "fox.rlpc"],
                  "unexpected argument cow.pc2; did you mean --points-a cow.pc2?"),
-                ("rlpcenc", ["a.obj", "b.obj", "-o", "x"], "put patterns in quotes"),
                 ("rlpcdec", ["a.rlpc", "--verfy"], "unknown option --verfy; did you mean --verify?"),
                 ("rlpcinfo", ["a.rlpc", "b.rlpc"], "unexpected argument b.rlpc")):
             self.fails(64, said, tool, *words)

@@ -148,15 +148,16 @@ class Promises(ToolsTest):
     def many_attributes(self, count):
         source = json.loads(self.write_gltf([0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0],
                                             [0, 0, 0]).read_text())
+        data = b"".join(struct.pack("<8f", 0, 0, 1, 0, 0, 1, 1, i / 128) for i in range(count))
         source["buffers"].append(
-            {"byteLength": 32, "uri": "data:application/octet-stream;base64,"
-             + base64.b64encode(struct.pack("<8f", 0, 0, 1, 0, 0, 1, 1, 1)).decode()})
-        source["bufferViews"].append({"buffer": 1, "byteLength": 32})
-        source["accessors"].append(
-            {"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC2"})
+            {"byteLength": len(data), "uri": "data:application/octet-stream;base64,"
+             + base64.b64encode(data).decode()})
         attributes = source["meshes"][0]["primitives"][0]["attributes"]
-        for i in range(count):
-            attributes[f"TEXCOORD_{i}"] = 2
+        for i in range(count):  # equal sets would be coded once
+            attributes[f"TEXCOORD_{i}"] = len(source["accessors"])
+            source["accessors"].append({"bufferView": len(source["bufferViews"]),
+                                        "componentType": 5126, "count": 4, "type": "VEC2"})
+            source["bufferViews"].append({"buffer": 1, "byteOffset": 32 * i, "byteLength": 32})
         self.path("many.gltf").write_text(json.dumps(source))
         return self.path("many.gltf")
 

@@ -2,6 +2,7 @@
 // while it encodes, so that tests see what the library allocates.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -43,7 +44,8 @@ struct WavingStrip {
     format.num_triangles = num_vertices - 2;
     format.indices = indices.data();
     format.num_frames = static_cast<std::uint32_t>(frames.size());
-    format.box_max[0] = format.box_max[1] = 1;
+    format.box_max[0] = std::max(1.0F, 0.026F * static_cast<float>(num_vertices));
+    format.box_max[1] = 1;
     format.box_min[2] = -0.2F;
     format.box_max[2] = 0.2F;
     return rlpc_encoder_create(&format, &options, append, &to, encoder);

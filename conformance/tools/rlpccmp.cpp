@@ -202,6 +202,9 @@ rlpc::InputResult<rlpc::Distortion> compare(const rlpc::ComparisonPair& pair,
   rlpc::FrameSource& b = *pair.b.frames;
   const std::size_t values = 3 * std::size_t{a.num_vertices()};
   std::vector<double> exact(values);
+  std::vector<double> exact_b(values);
+  // Where A has floats, those of B are compared with them.
+  const bool are_finer = a.is_finer_than_floats() && b.is_finer_than_floats();
   std::vector<float> original(values);
   std::vector<float> decoded(values);
   std::vector<float> in_order(values);
@@ -212,9 +215,15 @@ rlpc::InputResult<rlpc::Distortion> compare(const rlpc::ComparisonPair& pair,
     if (auto error = a.read_frame(f, original)) return *error;
     if (auto error = a.read_exact(f, exact)) return *error;
     if (auto error = b.read_frame(f, decoded)) return *error;
+    if (are_finer) {
+      if (auto error = b.read_exact(f, exact_b)) return *error;
+    }
     for (std::size_t v = 0; v < map.size(); ++v) {
       for (std::size_t c = 0; c < 3; ++c) {
-        in_order[3 * std::size_t{map[v]} + c] = decoded[3 * v + c];
+        const std::size_t at = 3 * std::size_t{map[v]} + c;
+        in_order[at] = decoded[3 * v + c];
+        // What the floats of B leave of its numbers is no difference between A and B.
+        if (are_finer) exact[at] -= exact_b[3 * v + c] - static_cast<double>(in_order[at]);
       }
     }
     metrics.add_frame(std::span<const double>(exact), in_order);

@@ -232,8 +232,8 @@ OutputOptions add_output_options(CLI::App& app, EncodeCommandLine& line) {
       "Search effort: fast, medium (default), slow")
       ->group(kOutput);
   app.add_option("--gof", line.gof,
-                 "Maximum frames per group, or `all` (default: 128; in the Main profile, up to "
-                 "4096 with several clips or where that costs less; 256 with --profile high)")
+                 "Maximum frames per group, or `all` (default: 128; Main: up to 4096, by "
+                 "cost; High: 256)")
       ->option_text("FRAMES")
       ->group(kOutput);
   auto* keep_order =

@@ -198,6 +198,9 @@ std::optional<int> read_encode_options(int argc, char** argv, EncodeOptions& opt
   EncodeCommandLine line(options);
   add_encode_options(app, line);
   if (const auto code = parse_command_line(app, argc, argv)) return code;
+  if (const std::string advice = point_cache_advice(app); !advice.empty()) {
+    return complain(advice, kUsage);
+  }
   options.input.path = line.inputs[0];
   options.input.more_paths.assign(line.inputs.begin() + 1, line.inputs.end());
   if (const auto wrong = check_places(line)) return complain(*wrong, kUsage);

@@ -110,7 +110,7 @@ class SmallRun(unittest.TestCase):
         found = {p["sequence"]: p for p in self.points() if p["settings"].endswith("--kg 0.3")}
         self.assertEqual(set(found), {"decoded", "mesh", "other", "walk", "seq"})
         for name, p in found.items():
-            frames = 9 if name == "walk" else 12  # 0.37 s at 24 frames a second, not 30
+            frames = 10 if name == "walk" else 12  # 0.37 s at 24 frames a second, not 30
             self.assertAlmostEqual(float(p["bpvf"]), 8 * int(p["bytes"]) / (404 * frames), 6, name)
             self.assertLessEqual(float(p["kg_error_percent"]), 0.3, name)
         done = self.compare("--codecs", "baseline", "--animation", "Run", self.folder / "walk.glb",

@@ -34,10 +34,10 @@ TEST_F(GltfClaimsTest, EveryProperPrefixFails) {
 TEST_F(GltfClaimsTest, DeepNestingDoesNotExhaustTheStack) {
   const std::size_t depth = 1000000;
   const std::string deep = std::string(depth, '[') + std::string(depth, ']');
-  expect_text(error_of_file(put("a.gltf", deep)), "expected an object");
-  expect_text(
-      error_of_file(put("a.gltf", R"({"asset": {"version": "1.0", "extras": )" + deep + "}}")),
-      "asset.version: found \"1.0\", expected \"2.0\"");
+  for (const std::string& text :
+       {deep, R"({"asset": {"version": "2.0", "extras": )" + deep + "}}"}) {
+    expect_text(error_of_file(put("a.gltf", text)), "nested more than 100 levels deep");
+  }
   GltfBuilder builder = one_triangle();
   Json nodes = builder.json["nodes"];
   for (std::size_t n = 0; n < 100000; ++n) builder.push("nodes", {{"children", {n + 2}}});

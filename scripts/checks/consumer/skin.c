@@ -1,6 +1,5 @@
 // Between frames, and bones for skinning on a graphics card:  skin walk.rlpc
 // Prints how far skinning alone is from the frames that the decoder gives.
-#include <math.h>
 #include <rlpcdec.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,9 +14,9 @@ typedef struct skin {
   float* rest;      // [num_vertices][3]
 } skin;
 
-// What a vertex shader does.
+// Does what a vertex shader does; returns how far a coordinate is from a position at most.
 static double distance_to(const skin* s, const float* xyz, size_t v) {
-  double squares = 0;
+  double most = 0;
   for (size_t c = 0; c < 3; ++c) {
     double at = 0;
     for (size_t k = kSlots * v; k < kSlots * (v + 1); ++k) {
@@ -26,9 +25,11 @@ static double distance_to(const skin* s, const float* xyz, size_t v) {
       at += (double)(s->weights[k] *
                      (m[c] * p[0] + m[4 + c] * p[1] + m[8 + c] * p[2] + m[12 + c]));
     }
-    squares += (at - (double)xyz[3 * v + c]) * (at - (double)xyz[3 * v + c]);
+    const double off = at - (double)xyz[3 * v + c];
+    if (off > most) most = off;
+    if (-off > most) most = -off;
   }
-  return sqrt(squares);
+  return most;
 }
 
 // Takes bones, weights and rest shape from the frame that has been decoded last.
@@ -52,7 +53,8 @@ static rlpc_status show(rlpc_decoder* decoder, uint32_t frame, const rlpc_frame_
   status = rlpc_decoder_bone_matrices(decoder, s->matrices, 16 * (size_t)s->pose.num_bones);
   double most = 0;
   for (size_t v = 0; status == RLPC_OK && v < num_vertices; ++v) {
-    most = fmax(most, distance_to(s, output->positions.data, v));
+    const double off = distance_to(s, output->positions.data, v);
+    if (off > most) most = off;
   }
   printf("frame %u: %u bones, skinning is off by up to %g\n", frame, s->pose.num_bones, most);
   return status;
