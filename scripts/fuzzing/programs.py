@@ -225,7 +225,10 @@ def mutate_file(numbers, path):
     data = path.read_bytes()
     is_text = path.suffix in (".obj", ".off") or (path.suffix == ".ply" and b"ascii" in data[:20])
     if path.suffix in (".glb", ".gltf") and numbers.random() < 0.8:
-        data = mutate_gltf(numbers, data)
+        try:
+            data = mutate_gltf(numbers, data)
+        except (ValueError, struct.error):  # a mutation before this one left no document
+            data = mutate_bytes(numbers, data)
     elif is_text and numbers.random() < 0.7:
         data = mutate_words(numbers, data)
     else:
