@@ -48,11 +48,9 @@ rlpc_status take_frames(rlpc_decoder& handle, const rlpc_blend& blend) {
   auto& [first, second] = handle.blend.frames;
   const bool needs_first = blend.weight < 1;
   const bool needs_second = blend.weight > 0 && blend.second_frame != blend.first_frame;
-  const auto swapped = [&] {
-    return (needs_first && second.frame == blend.first_frame) ||
-           (needs_second && first.frame == blend.second_frame);
-  };
-  if (swapped()) std::swap(first, second);
+  const bool are_swapped = (needs_first && second.frame == blend.first_frame) ||
+                           (needs_second && first.frame == blend.second_frame);
+  if (are_swapped) std::swap(first, second);
   if (needs_first) {
     if (const auto status = take_frame(handle, first, blend.first_frame); status != RLPC_OK)
       return status;
