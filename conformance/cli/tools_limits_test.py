@@ -7,6 +7,7 @@
 import itertools
 import json
 import os
+import random
 import re
 import struct
 import subprocess
@@ -250,6 +251,27 @@ class WorstCases(MeasuredTest):
         data[at + 1:at + 5] = (2 ** 25 + 1).to_bytes(4, "big")
         stream.write_bytes(data)
         self.refused("R-LVL-07", stream)
+
+    def test_random_motion_is_encoded_within_the_limit(self):
+        """Frames without anything in common take most: the largest basis, every kind of GOF."""
+        noise, side, frames = random.Random(48), 50, 50
+        with open(self.path("noise.obj"), "w") as mesh:
+            for v in range(side * side):
+                mesh.write(f"v {v % side} {v // side} 0\n")
+            for a in range(1, side * (side - 1)):
+                if a % side:
+                    mesh.write(f"f {a} {a + 1} {a + side}\nf {a + 1} {a + side + 1} {a + side}\n")
+        write_pc2(self.path("noise.pc2"), [[noise.random() for _ in range(3 * side * side)]
+                                           for _ in range(frames)])
+        for profile in ("baseline", "main", "high"):
+            command = ["rlpcenc", self.path("noise.obj"), "--points", self.path("noise.pc2"), "-q",
+                       "-o", self.path("a.rlpc"), "--profile", profile]
+            refused = self.fails(1, ["--max-memory"], *command, "--max-memory", "20MB")
+            need = int(re.search(r"may need (\d+) MiB", refused.err)[1])
+            result, memory = self.measured(*command, "--max-memory", f"{need}MiB")
+            self.assertEqual(result.code, 0, result.err)
+            if b"__asan_init" not in (Tools.folder / "rlpcenc").read_bytes():
+                self.assertLess(memory, need * MIB, profile)
 
 
 class Threads(MeasuredTest):

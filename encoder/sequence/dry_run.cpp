@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "encoder/sequence/check_settings.h"
+#include "encoder/sequence/memory_need.h"
 #include "encoder/sequence/sequence_coding.h"
 
 namespace rlpc {

@@ -15,6 +15,7 @@
 #include "encoder/sequence/choices/grid_choice.h"
 #include "encoder/sequence/choices/level_choice.h"
 #include "encoder/sequence/format_header.h"
+#include "encoder/sequence/memory_need.h"
 #include "encoder/sequence/span_buffer.h"
 #include "encoder/write/write_frame_gof.h"
 
@@ -41,7 +42,7 @@ std::optional<InputError> LowDelayEncoder::prepare() {
   const std::uint32_t longest =
       std::min(longest_gof(settings_, format_.num_vertices), header.num_frames);
   // Of a GOF, one frame is held.
-  const auto threads = check_memory(settings_, header, 1, 0, 0);
+  const auto threads = check_memory(settings_, header, 1, 0, {});
   if (!threads) return threads.error();
   num_threads_ = std::clamp(settings_.threads, 1U, kMaxEncoderThreads);
   if (auto error = choose_level(header, longest, format_.least_level)) return error;

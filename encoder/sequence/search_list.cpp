@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "encoder/sequence/sequence_coding.h"
+#include "encoder/sequence/memory_need.h"
 
 namespace rlpc {
 namespace {

@@ -6,10 +6,8 @@
 
 #include "common/bitstream/crc32.h"
 #include "common/io/float_position.h"
-#include "common/io/messages.h"
 #include "common/parallel/for_each.h"
 #include "encoder/cluster_gof/cluster_gof_kind.h"
-#include "encoder/frame_gof/pattern_search.h"
 #include "encoder/gof/gof_kind_search.h"
 #include "encoder/math/det_math.h"
 #include "encoder/sequence/choices/gof_kinds.h"
@@ -17,23 +15,6 @@
 namespace rlpc {
 
 namespace {
-
-// Per position of the span being coded. Measured with random motion: 90 to 150. Real motion
-// needs 40.
-constexpr std::uint64_t kBytesOfPosition = 150;  // fixed: memory
-// Of a skinned model that later spans may use: factors of two or four bytes, of at most three
-// trajectories for each frame.
-constexpr std::uint64_t kFactorsOfModel = 12;  // fixed: memory
-
-// Frames that can be coded at once.
-std::uint64_t frames_in_memory(const EncoderSettings& settings, std::uint32_t num_vertices,
-                               std::uint64_t bytes_of_position) {
-  constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 26;  // fixed: memory
-  constexpr std::uint64_t kPart = 2;  // fixed: they take at most half of the limit
-  const std::uint64_t positions =
-      std::min(kMostPositions, settings.max_memory_bytes / (kPart * bytes_of_position));
-  return std::min<std::uint64_t>(positions / num_vertices, kMaxFrames);
-}
 
 // The triangles of the input by the indices of decoded vertices.
 std::vector<Triangle> renumber(std::span<const Triangle> triangles,
@@ -48,94 +29,6 @@ std::vector<Triangle> renumber(std::span<const Triangle> triangles,
 }
 
 }  // namespace
-
-std::uint32_t longest_gof(const EncoderSettings& settings, std::uint32_t num_vertices) {
-  if (settings.gof_frames > 0) return settings.gof_frames;
-  if (settings.profile == Profile::kHigh) return kDefaultTrackFrames;
-  return settings.clips.size() < 2 ? kDefaultGofFrames
-                                   : longest_gof_of_all(settings, num_vertices);
-}
-
-std::uint32_t longest_gof_of_all(const EncoderSettings& settings, std::uint32_t num_vertices) {
-  if (settings.gof_frames > 0) return settings.gof_frames;
-  if (settings.profile == Profile::kHigh) return kDefaultTrackFrames;
-  if (settings.profile == Profile::kBaseline) return kDefaultGofFrames;
-  return static_cast<std::uint32_t>(
-      std::clamp<std::uint64_t>(frames_in_memory(settings, num_vertices, kBytesOfPosition),
-                                kDefaultGofFrames, kClipFrames));
-}
-
-std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header) {
-  const std::uint32_t longest = longest_gof(settings, header.num_vertices);
-  if (settings.profile != Profile::kHigh) return longest;
-  const auto frames = [&](std::uint64_t bytes_of_position) {
-    return std::max<std::uint64_t>(
-        longest, frames_in_memory(settings, header.num_vertices, bytes_of_position));
-  };
-  const std::uint64_t alone = frames(kBytesOfPosition);
-  // With several spans, there are two skinned models besides: one in force and a new one.
-  return static_cast<std::uint32_t>(
-      header.num_frames <= alone ? alone : frames(kBytesOfPosition + 2 * kFactorsOfModel));
-}
-
-namespace {
-
-// Of a vertex of a GOF of frames, or a span of them, that a thread encodes by each choice that
-// is compared: positions, as doubles and floats and decoded, and what each encoding learns.
-std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHeader& header,
-                              std::uint32_t num_frames) {
-  constexpr std::uint64_t kOfFrame = 36;     // fixed: memory; without decoded positions
-  constexpr std::uint64_t kDecoded = 12;     // fixed: memory
-  constexpr std::uint64_t kOfFilter = 2100;  // fixed: memory
-  const KindChoice kinds = settings.usable_kinds();
-  if (settings.profile != Profile::kHigh ||
-      (kinds != KindChoice::kAuto && kinds != KindChoice::kFrames)) {
-    return 0;
-  }
-  std::size_t choices = 1;
-  if (!settings.low_delay) {
-    const auto patterns = patterns_of(settings, header.open_end_flag, num_frames);
-    const auto patches = patches_of(settings, header.open_end_flag, num_frames);
-    choices = std::max(patterns.size(), choices_of_patches(patterns, patches).size());
-  }
-  return kOfFrame * num_frames +
-         choices * (kDecoded * num_frames + kOfFilter * settings.frames.temporal_layers);
-}
-
-}  // namespace
-
-InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
-                                        const SequenceHeader& header, std::uint32_t longest_gof,
-                                        std::uint32_t kept_frames, std::uint64_t source_bytes) {
-  // Measured with random motion: 70 bytes per position of a kept analysis. Real motion
-  // needs 10.
-  constexpr std::uint64_t kFixed = std::uint64_t{16} << 20;  // fixed: memory
-  constexpr std::uint64_t kOfVertex = 700;                   // fixed: memory
-  constexpr std::uint64_t kOfTriangle = 250;                 // fixed: memory
-  constexpr std::uint64_t kKept = 70;                        // fixed: memory
-  // The rest of such a model: rest position, influences, two sets of weights of prediction.
-  constexpr std::uint64_t kOfModel = 400;  // fixed: memory
-  const bool has_models = settings.profile == Profile::kHigh && longest_gof < header.num_frames;
-  const std::uint64_t of_model =
-      has_models ? header.num_vertices * (kOfModel + kFactorsOfModel * longest_gof) : 0;
-  // Each thread has a GOF of its own, or a candidate for one; another model is in force.
-  const std::uint64_t of_thread =
-      header.num_vertices * std::max(kBytesOfPosition * longest_gof,
-                                     bytes_of_frames(settings, header, longest_gof)) +
-      of_model;
-  const std::uint64_t of_vertex = kOfVertex + kKept * kept_frames;
-  const std::uint64_t needed = kFixed + source_bytes + header.num_vertices * of_vertex +
-                               header.num_triangles * kOfTriangle + of_thread + of_model;
-  if (needed <= settings.max_memory_bytes) {
-    const std::uint64_t others = (settings.max_memory_bytes - needed) / of_thread;
-    const std::uint32_t wanted = std::clamp(settings.threads, 1U, kMaxEncoderThreads);
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(wanted, others + 1));
-  }
-  return InputError{"encoding may need " + std::to_string((needed >> 20) + 1) +
-                        " MiB of memory; the limit is " + size_text(settings.max_memory_bytes) +
-                        " (--max-memory). A shorter --gof needs less",
-                    true};
-}
 
 SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettings& settings,
                                std::span<const Triangle> triangles)

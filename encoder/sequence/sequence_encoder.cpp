@@ -12,6 +12,7 @@
 #include "encoder/sequence/choices/gof_cuts.h"
 #include "encoder/sequence/choices/level_choice.h"
 #include "encoder/sequence/choices/lossless_grid.h"
+#include "encoder/sequence/memory_need.h"
 #include "encoder/sequence/stream_verifier.h"
 
 namespace rlpc {
@@ -105,7 +106,9 @@ InputResult<GridChoice> SequenceEncoder::first_grid() const {
 }
 
 std::uint32_t SequenceEncoder::longest_span_of(const SequenceHeader& header) const {
-  return settings_.profile == Profile::kHigh ? longest_span(settings_, header) : longest_gof_;
+  return settings_.profile == Profile::kHigh
+             ? longest_span(settings_, header, {source_.memory_bytes()})
+             : longest_gof_;
 }
 
 // In the unit of the coordinates.
@@ -131,7 +134,7 @@ std::optional<InputError> SequenceEncoder::allot_memory(const SequenceHeader& he
   const std::uint32_t largest = std::min(longest_span_of(header), header.num_frames);
   const auto threads = [&](bool keeps) {
     return check_memory(settings_, header, largest, keeps ? header.num_frames : 0,
-                        source_.memory_bytes());
+                        {source_.memory_bytes()});
   };
   // What the cuts are measured from is smaller than an analysis.
   const bool keeps_cuts = settings_.temporal_layers() > 1;

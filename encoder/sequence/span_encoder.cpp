@@ -11,13 +11,20 @@
 #include "encoder/sequence/check_frames.h"
 #include "encoder/sequence/choices/grid_choice.h"
 #include "encoder/sequence/format_header.h"
+#include "encoder/sequence/memory_need.h"
 
 namespace rlpc {
+namespace {
+
+// Frames are held as floats until their span is encoded.
+constexpr SourceMemory kHeldFrames{.bytes_of_position = 3 * sizeof(float)};
+
+}  // namespace
 
 // Spans of as many GOFs as may be held, all of about the same length.
 void SpanEncoder::make_spans(const SequenceHeader& header) {
   const std::uint32_t of_gof = longest_gof(settings_, header.num_vertices);
-  std::uint32_t longest = longest_span(settings_, header);
+  std::uint32_t longest = longest_span(settings_, header, kHeldFrames);
   if (format_.max_held_frames > 0) {
     longest = std::min(longest, std::max(of_gof, format_.max_held_frames));
   }
@@ -40,9 +47,7 @@ std::optional<InputError> SpanEncoder::prepare() {
   make_spans(header);
   std::uint32_t longest = 0;
   for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
-  // The buffer holds frames as floats.
-  const std::uint64_t buffer_bytes = 12 * std::uint64_t{header.num_vertices} * longest;
-  const auto threads = check_memory(settings_, header, longest, 0, buffer_bytes);
+  const auto threads = check_memory(settings_, header, longest, 0, kHeldFrames);
   if (!threads) return threads.error();
   num_threads_ = *threads;
   longest_gof_ = longest_gof_of(spans_);

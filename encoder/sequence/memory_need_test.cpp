@@ -1,4 +1,4 @@
-#include "encoder/sequence/sequence_coding.h"
+#include "encoder/sequence/memory_need.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ TEST(LongestGof, WithSeveralClipsIsWhatMemoryAllows) {
   EXPECT_EQ(longest_gof(settings, 100), 4096);
   EXPECT_EQ(longest_gof(settings, 1U << 15), 2048);
   EXPECT_EQ(longest_gof(settings, 1U << 20), 128);
-  settings.max_memory_bytes = std::uint64_t{300} << 20;
+  settings.max_memory_bytes = std::uint64_t{380} << 20;
   EXPECT_EQ(longest_gof(settings, 1U << 10), 1024);
 }
 
