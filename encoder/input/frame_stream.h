@@ -22,7 +22,8 @@ class FrameStream {
     FrameRate frame_rate;
     std::vector<Triangle> triangles;  // every index below num_vertices; may be empty
     SourceAttributes attributes{};
-    std::vector<std::string> notes{};  // as FrameSource::notes()
+    std::vector<std::string> notes{};   // as FrameSource::notes()
+    bool is_finer_than_floats = false;  // coordinates of the input are rounded to floats
   };
 
   explicit FrameStream(Shape shape) : shape_(std::move(shape)) {}

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <string>
@@ -50,6 +51,23 @@ void use_box(const Box& box, FrameFormat& format) {
   std::copy_n(box.begin() + 3, 3, format.box_max.begin());
 }
 
+// How far floats within a box may be from the coordinates that they are rounded from.
+double rounding_in(const FrameFormat& format) {
+  float largest = 0.0F;
+  for (std::size_t c = 0; c < 3; ++c) {
+    largest = std::max({largest, std::abs(format.box_min[c]), std::abs(format.box_max[c])});
+  }
+  const double spacing =
+      double{std::nextafter(largest, std::numeric_limits<float>::infinity())} - largest;
+  return 0.5 * std::sqrt(3.0) * spacing;
+}
+
+// The encoder sees floats: leaves it what their rounding leaves of the error.
+void leave_room(double rounding, Target& target) {
+  constexpr double kLeast = 1e-30;  // fixed: a target that is out of reach, but valid
+  target.value = std::max(target.value - rounding, kLeast);
+}
+
 InputResult<LowDelayReport> finish(FrameEncoder& encoder, std::optional<InputError> stopped) {
   if (stopped && encoder.num_added() == 0) return *stopped;
   auto report = encoder.finish();
@@ -73,11 +91,10 @@ InputResult<LowDelayReport> encode_low_delay(FrameSource& source, const EncodeOp
   EncoderSettings settings = options.settings;
   double rounding = 0.0;
   if (settings.target.kind == Target::kMaxError) {
-    // The encoder sees floats, and keeps to what these leave of the error.
     const auto largest = check_rounding(source, settings.target.value);
     if (!largest) return largest.error();
     rounding = *largest;
-    settings.target.value = std::max(settings.target.value - rounding, 1e-30);
+    leave_room(rounding, settings.target);
   }
   auto encoder = FrameEncoder::create(format, settings, sink);
   if (!encoder) return encoder.error();
@@ -104,18 +121,29 @@ InputResult<LowDelayReport> encode_live(FrameStream& stream, const EncodeOptions
   BoxOfFrames first;
   first.add(xyz);
   use_box(options.box.value_or(first.enlarged()), format);
-  auto encoder = FrameEncoder::create(format, options.settings, sink);
+  EncoderSettings settings = options.settings;
+  double rounding = 0.0;
+  if (settings.target.kind == Target::kMaxError && shape.is_finer_than_floats) {
+    rounding = rounding_in(format);  // frames that are yet to come are within the box, too
+    leave_room(rounding, settings.target);
+  }
+  auto encoder = FrameEncoder::create(format, settings, sink);
   if (!encoder) return encoder.error();
+  const auto finish_here = [&](std::optional<InputError> stopped) {
+    auto encoded = finish(*encoder, std::move(stopped));
+    if (encoded) encoded->report.largest_rounding = rounding;
+    return encoded;
+  };
   while (more && *more) {
     if (auto error = encoder->add_frame(xyz)) {
       error->message = shape.name + ": " + error->message;
       if (!options.box) error->message += " (8 times the size of the first frame; see --box)";
-      return finish(*encoder, std::move(error));
+      return finish_here(std::move(error));
     }
     if (!flush()) return InputError{"the stream could not be written"};
     more = stream.next_frame(xyz);
   }
-  return finish(*encoder, more ? std::nullopt : std::optional(more.error()));
+  return finish_here(more ? std::nullopt : std::optional(more.error()));
 }
 
 }  // namespace rlpc

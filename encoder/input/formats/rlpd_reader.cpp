@@ -240,6 +240,7 @@ InputResult<std::unique_ptr<FrameStream>> open_rlpd_stream(
   if (!triangles) return triangles.error();
   FrameStream::Shape shape{name, header->num_vertices, frame_rate.value_or(header->frame_rate),
                            std::move(*triangles)};
+  shape.is_finer_than_floats = true;
   return std::unique_ptr<FrameStream>(
       std::make_unique<RlpdStream>(std::move(shape), file, header->grid));
 }
