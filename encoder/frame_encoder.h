@@ -61,6 +61,9 @@ struct FrameFormat {
   // grid coarser.
   std::array<float, 3> box_min{};
   std::array<float, 3> box_max{};
+  // The largest distance of a vertex from the floats that it is rounded to, in units, where
+  // frames are added with their exact numbers: with low delay, Target::kMaxError includes it.
+  double max_rounding = 0.0;
   std::uint32_t least_level = 1;  // lowest level that the stream may declare, 1 to 4
   // High profile: most frames that are held before they are encoded together, but at least
   // those of one GOF. Fewer mean that bytes come sooner, and that there are more of them. 0: as
@@ -81,10 +84,13 @@ class FrameEncoder {
   FrameEncoder& operator=(FrameEncoder&&) noexcept;
   ~FrameEncoder();
 
-  // Adds the next frame: [num_vertices][3], in units. Errors: a wrong number of values; a NaN,
-  // or a coordinate outside the box; more than num_frames frames; a span that needs a higher
-  // level; frames that were not verified; a sink that failed. Errors are sticky.
-  std::optional<InputError> add_frame(std::span<const float> xyz);
+  // Adds the next frame: [num_vertices][3], in units. exact: the numbers that these are rounded
+  // from, as many, which errors are measured against; empty: the floats themselves. Errors: a
+  // wrong number of values; a NaN, or a coordinate outside the box; more than num_frames
+  // frames; a span that needs a higher level; frames that were not verified; a sink that
+  // failed. Errors are sticky.
+  std::optional<InputError> add_frame(std::span<const float> xyz,
+                                      std::span<const double> exact = {});
   // Ends the stream; to be called after the last frame. Errors: fewer than num_frames frames,
   // or none; a sink that failed. The metrics are those of the whole sequence, without single
   // frames; step is that of the last span; target_met: in every span.

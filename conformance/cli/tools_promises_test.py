@@ -94,6 +94,23 @@ class Promises(ToolsTest):
             self.assertAlmostEqual(report["largest_rounding"], coarse, delta=1e-9)
             self.check_bound(source, frames, 8 * coarse, "--profile", "high", "--low-delay")
 
+    def test_low_delay_measures_by_the_numbers_in_the_input(self):
+        frames = self.far_away()
+        coarse = rounding(frames)
+        for target in (("--lossless", 20), ("--kg", 20), ("--max-error", 8 * coarse)):
+            report = self.ok("rlpcenc", self.write_objs(frames), "-o", self.path("a.rlpc"),
+                             "--keep-order", "--json", "--profile", "high", "--low-delay",
+                             *target).json()
+            self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.pc2"))
+            squared = [math.dist(frame[i:i + 3], decoded[i:i + 3]) ** 2
+                       for frame, decoded in zip(frames, read_pc2(self.path("a.pc2")))
+                       for i in range(0, 12, 3)]
+            metrics = report["metrics"]
+            self.assertAlmostEqual(metrics["max_error"], math.sqrt(max(squared)), delta=1e-9)
+            self.assertAlmostEqual(metrics["rms_error"], math.sqrt(sum(squared) / len(squared)),
+                                   delta=1e-9)
+            self.assertAlmostEqual(report["largest_rounding"], coarse, delta=1e-9)
+
     def test_a_bound_below_the_spacing_of_floats_is_refused(self):
         frames = self.far_away()
         shape = [-1, 0, 0.1, 1, 0, 0.2, 0, 1, 0.3, 1, 1, 0.7]

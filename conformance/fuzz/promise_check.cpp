@@ -16,6 +16,15 @@ namespace {
 
 PromiseResult wrong(const std::string& what) { return {Outcome::kWrong, what}; }
 
+double largest_rounding(std::span<const double> exact, std::span<const float> xyz) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < xyz.size(); i += 3) {
+    largest = std::max(largest, std::hypot(exact[i] - xyz[i], exact[i + 1] - xyz[i + 1],
+                                           exact[i + 2] - xyz[i + 2]));
+  }
+  return largest;
+}
+
 InputResult<PromiseStream> encode_frame_by_frame(const PromiseCase& c, ExactFrames& source) {
   FrameFormat format;
   format.num_vertices = source.num_vertices();
@@ -31,6 +40,7 @@ InputResult<PromiseStream> encode_frame_by_frame(const PromiseCase& c, ExactFram
   std::vector<float> xyz(3 * std::size_t{source.num_vertices()});
   for (std::uint32_t f = 0; f < source.num_frames(); ++f) {
     source.read_frame(f, xyz);
+    format.max_rounding = std::max(format.max_rounding, largest_rounding(c.frames[f], xyz));
     for (std::size_t i = 0; i < xyz.size(); ++i) {
       format.box_min[i % 3] = std::min(format.box_min[i % 3], xyz[i]);
       format.box_max[i % 3] = std::max(format.box_max[i % 3], xyz[i]);
@@ -44,7 +54,9 @@ InputResult<PromiseStream> encode_frame_by_frame(const PromiseCase& c, ExactFram
   if (!encoder) return encoder.error();
   for (std::uint32_t f = 0; f < source.num_frames(); ++f) {
     source.read_frame(f, xyz);
-    if (auto error = encoder->add_frame(xyz)) return *error;
+    const auto exact = source.is_finer_than_floats() ? std::span<const double>(c.frames[f])
+                                                     : std::span<const double>();
+    if (auto error = encoder->add_frame(xyz, exact)) return *error;
   }
   auto report = encoder->finish();
   if (!report) return report.error();
@@ -65,7 +77,7 @@ InputResult<PromiseStream> encode_case(const PromiseCase& c) {
   return stream;
 }
 
-// What a stream makes of the frames. A FrameEncoder is given floats: these are its input.
+// What a stream makes of the frames.
 struct Measured {
   double largest_error = 0.0;
   long double squared_error = 0.0L;
@@ -94,18 +106,14 @@ void add_spread(const std::vector<double>& frame, Measured& m) {
   }
 }
 
-void compare_frame(const PromiseCase& c, const SequenceHeader& header,
-                   const std::vector<double>& frame, const std::vector<std::int32_t>& positions,
+void compare_frame(const SequenceHeader& header, const std::vector<double>& frame,
+                   const std::vector<std::int32_t>& positions,
                    const std::vector<std::uint32_t>& order, Measured& m) {
   const Grid& grid = header.grid;
-  std::vector<double> originals = frame;
-  if (c.way != PromiseCase::kWhole) {
-    for (double& x : originals) x = static_cast<double>(static_cast<float>(x));
-  }
   for (std::size_t v = 0; v < order.size(); ++v) {
     long double squared = 0.0L;
     for (std::size_t k = 0; k < 3; ++k) {
-      const double original = originals[3 * std::size_t{order[v]} + k];
+      const double original = frame[3 * std::size_t{order[v]} + k];
       const auto coded = static_cast<float>(original);
       // 7.3, in doubles: a sum of 28 bits times a power of two.
       const double on_grid = std::ldexp(
@@ -120,7 +128,7 @@ void compare_frame(const PromiseCase& c, const SequenceHeader& header,
     m.squared_error += squared;
     m.largest_error = std::max(m.largest_error, static_cast<double>(std::sqrt(squared)));
   }
-  add_spread(originals, m);
+  add_spread(frame, m);
 }
 
 std::optional<std::string> find_violation(const PromiseStream& stream) {
@@ -221,7 +229,7 @@ PromiseResult check_stream(const PromiseCase& c, const PromiseStream& stream) {
     const auto more = decoder->next_frame(positions);
     if (!more) return wrong("does not decode: " + describe_error(more.error()));
     if (!*more) return wrong("ends too early");
-    compare_frame(c, decoder->header(), frame, positions, order, measured);
+    compare_frame(decoder->header(), frame, positions, order, measured);
   }
   const auto more = decoder->next_frame(positions);
   if (!more || *more) return wrong("does not end well");

@@ -65,13 +65,19 @@ class TurnedStream final : public FrameStream {
 
   InputResult<bool> next_frame(std::span<float> xyz) override {
     auto read = stream_->next_frame(xyz);
-    if (read && *read) turn(axes_, xyz);
-    return read;
+    if (!read || !*read) return read;
+    turn(axes_, xyz);
+    const std::span<const double> exact = stream_->exact();
+    exact_.assign(exact.begin(), exact.end());
+    turn(axes_, exact_);
+    return true;
   }
+  std::span<const double> exact() const override { return exact_; }
 
  private:
   std::unique_ptr<FrameStream> stream_;
   Axes axes_;
+  std::vector<double> exact_;
 };
 
 }  // namespace

@@ -22,8 +22,7 @@ class FrameStream {
     FrameRate frame_rate;
     std::vector<Triangle> triangles;  // every index below num_vertices; may be empty
     SourceAttributes attributes{};
-    std::vector<std::string> notes{};   // as FrameSource::notes()
-    bool is_finer_than_floats = false;  // coordinates of the input are rounded to floats
+    std::vector<std::string> notes{};  // as FrameSource::notes()
   };
 
   explicit FrameStream(Shape shape) : shape_(std::move(shape)) {}
@@ -35,6 +34,9 @@ class FrameStream {
   // Waits for the next frame, and for no more: 3 * num_vertices values, not checked. False
   // after the last. Errors: the input cannot be read, or ends within the frame.
   virtual InputResult<bool> next_frame(std::span<float> xyz) = 0;
+  // The numbers of the input that the last frame was rounded from, as many; empty if the input
+  // has floats. Valid until the next frame.
+  virtual std::span<const double> exact() const { return {}; }
 
  private:
   Shape shape_;

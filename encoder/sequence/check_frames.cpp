@@ -1,5 +1,7 @@
 #include "encoder/sequence/check_frames.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "common/syntax/sequence_header.h"
@@ -39,7 +41,8 @@ std::optional<InputError> check_format(const FrameFormat& format) {
 }
 
 std::optional<InputError> check_frame(const FrameFormat& format, std::uint32_t num_added,
-                                      std::span<const float> xyz) {
+                                      std::span<const float> xyz,
+                                      std::span<const double> exact) {
   const std::string frame = "frame " + std::to_string(num_added) + " (from 0)";
   if (format.num_frames > 0 && num_added == format.num_frames) {
     return InputError{frame + " is one more than the number of frames announced, " +
@@ -52,6 +55,13 @@ std::optional<InputError> check_frame(const FrameFormat& format, std::uint32_t n
     return InputError{frame + " has " + std::to_string(xyz.size()) + " values; " +
                       std::to_string(format.num_vertices) + " vertices have " +
                       std::to_string(3 * std::size_t{format.num_vertices})};
+  }
+  if (!exact.empty() && exact.size() != xyz.size()) {
+    return InputError{frame + " has " + std::to_string(exact.size()) + " exact values for " +
+                      std::to_string(xyz.size()) + " floats"};
+  }
+  if (!std::all_of(exact.begin(), exact.end(), [](double x) { return std::isfinite(x); })) {
+    return InputError{frame + " has an exact value that is not finite"};
   }
   for (std::size_t i = 0; i < xyz.size(); ++i) {
     const std::size_t c = i % 3;

@@ -19,7 +19,8 @@ class FrameCoder {
 
   // Before the first frame; the format and the settings have been checked.
   virtual std::optional<InputError> prepare() = 0;
-  virtual std::optional<InputError> add_frame(std::span<const float> xyz) = 0;
+  virtual std::optional<InputError> add_frame(std::span<const float> xyz,
+                                              std::span<const double> exact) = 0;
   virtual InputResult<EncodeReport> finish() = 0;
   virtual std::uint32_t num_added() const = 0;
 };

@@ -52,8 +52,9 @@ FrameEncoder::FrameEncoder(FrameEncoder&&) noexcept = default;
 FrameEncoder& FrameEncoder::operator=(FrameEncoder&&) noexcept = default;
 FrameEncoder::~FrameEncoder() = default;
 
-std::optional<InputError> FrameEncoder::add_frame(std::span<const float> xyz) {
-  return coder_->add_frame(xyz);
+std::optional<InputError> FrameEncoder::add_frame(std::span<const float> xyz,
+                                                  std::span<const double> exact) {
+  return coder_->add_frame(xyz, exact);
 }
 InputResult<EncodeReport> FrameEncoder::finish() { return coder_->finish(); }
 std::uint32_t FrameEncoder::num_added() const { return coder_->num_added(); }

@@ -58,11 +58,11 @@ std::optional<InputError> LowDelayEncoder::prepare() {
 
 std::optional<InputError> LowDelayEncoder::begin_stream(std::span<const float> xyz) {
   SpanBuffer frame(format_.num_vertices, 1);
-  frame.add(xyz);
+  frame.add(xyz, {});
   const auto measured = measure_extent(frame);
   if (!measured) return measured.error();
   SequenceHeader header = coding_->header();
-  const Target& target = settings_.target;
+  const Target target = target_for_floats();
   set_grid_of_box(header, format_, target, finest_error(target, measured->rms_spread));
   coding_->set_header(header);
   stream_.emplace(header, settings_, coding_->connectivity());
@@ -82,10 +82,20 @@ std::uint32_t LowDelayEncoder::frames_of_gof() const {
   return (left + gofs - 1) / gofs;
 }
 
+// A largest error is that of the numbers which floats are rounded from: these may add theirs.
+Target LowDelayEncoder::target_for_floats() const {
+  constexpr double kLeast = 1e-30;  // fixed: out of reach, as what is left is not positive
+  Target target = settings_.target;
+  if (target.kind == Target::kMaxError) {
+    target.value = std::max(target.value - format_.max_rounding, kLeast);
+  }
+  return target;
+}
+
 // Grid steps. rms_spread: RMS of the coordinates about the mean of their frame, units.
 double LowDelayEncoder::step_for(double rms_spread) const {
   const double per_unit = exact_exp2(-coding_->header().grid.log2_step);
-  const Target& target = settings_.target;
+  const Target target = target_for_floats();
   if (target.kind == Target::kMaxError) {
     // Coordinates are wrong by half a step, and by half a grid step where they are rounded.
     const double of_coordinate = target.value * per_unit / std::sqrt(3.0);
@@ -97,7 +107,7 @@ double LowDelayEncoder::step_for(double rms_spread) const {
 
 std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz) {
   SpanBuffer frame(format_.num_vertices, 1);
-  frame.add(xyz);
+  frame.add(xyz, {});
   const auto extent = measure_extent(frame);
   if (!extent) return extent.error();
   const CodedMesh& layers = (*meshes_)[Prediction::kLayers];
@@ -132,7 +142,7 @@ std::optional<InputError> LowDelayEncoder::divide(std::span<const float> xyz) {
   const std::uint32_t count = settings_.frames.patches.value_or(0);
   if (count == 0) return std::nullopt;
   SpanBuffer buffer(format_.num_vertices, 1);
-  buffer.add(xyz);
+  buffer.add(xyz, {});
   const auto frame = coding_->read_frames(buffer, {0, 1, 1});
   if (!frame) return frame.error();
   set_patches(gof_->settings, divide_into_patches(coding_->header(), settings_, *frame,
@@ -144,7 +154,7 @@ std::optional<InputError> LowDelayEncoder::code_first(std::span<const float> xyz
                                                       const CodedMesh& layers) {
   if (settings_.target.kind == Target::kMaxError) return std::nullopt;  // axes may add a little
   SpanBuffer buffer(format_.num_vertices, 1);
-  buffer.add(xyz);
+  buffer.add(xyz, {});
   const auto frame = coding_->read_frames(buffer, {0, 1, 1});
   if (!frame) return frame.error();
   gof_->first =
@@ -153,9 +163,10 @@ std::optional<InputError> LowDelayEncoder::code_first(std::span<const float> xyz
   return std::nullopt;
 }
 
-std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz) {
+std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz,
+                                                      std::span<const double> exact) {
   SpanBuffer buffer(format_.num_vertices, 1);
-  buffer.add(xyz);
+  buffer.add(xyz, exact);
   const auto frame = coding_->read_frames(buffer, {0, 1, 1});
   if (!frame) return frame.error();
   std::vector<std::int32_t> positions(xyz.size());
@@ -180,7 +191,9 @@ std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz
   if (!measured) return measured.error();
   StreamVerifier& verifier =
       out_.verifier(coding_->header(), coding_->connectivity(), num_threads_);
-  if (auto error = verifier.expect(positions, xyz)) return error;
+  std::vector<double> original(xyz.size());
+  if (auto error = buffer.read_exact(0, original)) return error;
+  if (auto error = verifier.expect(positions, original)) return error;
   ++num_added_;
   ++gof_->coded;
   const double rms = metrics_.result().rms_error / std::sqrt(3.0);
@@ -205,9 +218,10 @@ std::optional<InputError> LowDelayEncoder::verify() {
       .check_expected();
 }
 
-std::optional<InputError> LowDelayEncoder::add_frame(std::span<const float> xyz) {
+std::optional<InputError> LowDelayEncoder::add_frame(std::span<const float> xyz,
+                                                     std::span<const double> exact) {
   if (failure_) return failure_;
-  if (auto error = check_frame(format_, num_added_, xyz)) return error;
+  if (auto error = check_frame(format_, num_added_, xyz, exact)) return error;
   const Threads threads(num_threads_);
   if (!stream_) {
     if (auto error = begin_stream(xyz)) return fail(*error);
@@ -215,7 +229,7 @@ std::optional<InputError> LowDelayEncoder::add_frame(std::span<const float> xyz)
   if (!gof_) {
     if (auto error = begin_gof(xyz)) return fail(*error);
   }
-  if (auto error = code_frame(xyz)) return fail(*error);
+  if (auto error = code_frame(xyz, exact)) return fail(*error);
   if (num_added_ == 1) {
     if (auto error = out_.check_contents(attributes_->has_sets())) return fail(*error);
   }
@@ -234,6 +248,7 @@ InputResult<EncodeReport> LowDelayEncoder::finish() {
   EncodeReport report;
   stream_->describe(coding_->header(), coding_->connectivity(), report);
   report.metrics = metrics_.result();
+  report.largest_rounding = out_.largest_rounding();
   if (auto error = out_.finish(report.metrics, sink_)) return fail(*error);
   report.attributes = attributes_->reports();
   report.step = step_ * exact_exp2(coding_->header().grid.log2_step);

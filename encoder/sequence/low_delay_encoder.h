@@ -26,7 +26,8 @@ class LowDelayEncoder final : public FrameCoder {
   LowDelayEncoder(FrameFormat format, EncoderSettings settings, ByteSink sink);
 
   std::optional<InputError> prepare() override;
-  std::optional<InputError> add_frame(std::span<const float> xyz) override;
+  std::optional<InputError> add_frame(std::span<const float> xyz,
+                                      std::span<const double> exact) override;
   InputResult<EncodeReport> finish() override;
   std::uint32_t num_added() const override { return num_added_; }
 
@@ -46,9 +47,11 @@ class LowDelayEncoder final : public FrameCoder {
   std::optional<InputError> begin_gof(std::span<const float> xyz);
   std::optional<InputError> divide(std::span<const float> xyz);
   std::optional<InputError> code_first(std::span<const float> xyz, const CodedMesh& layers);
-  std::optional<InputError> code_frame(std::span<const float> xyz);
+  std::optional<InputError> code_frame(std::span<const float> xyz,
+                                       std::span<const double> exact);
   void end_gof();
   std::optional<InputError> verify();
+  Target target_for_floats() const;
   double step_for(double rms_spread) const;
   std::uint32_t frames_of_gof() const;
   InputError fail(InputError error) {

@@ -20,23 +20,41 @@ class SpanBuffer final : public FrameSource {
   }
 
   // A span that ends with the frames of another buffer.
-  SpanBuffer(std::uint32_t num_vertices, std::vector<float> xyz)
-      : FrameSource({num_vertices,
-                     static_cast<std::uint32_t>(xyz.size() / (3 * std::size_t{num_vertices})),
-                     {},
-                     {}}),
-        xyz_(std::move(xyz)) {}
+  explicit SpanBuffer(SpanBuffer&& other)
+      : FrameSource({other.num_vertices(), other.frames_added(), {}, {}}),
+        xyz_(std::move(other.xyz_)),
+        exact_(std::move(other.exact_)) {}
 
-  void add(std::span<const float> xyz) { xyz_.insert(xyz_.end(), xyz.begin(), xyz.end()); }
-  std::vector<float> take() { return std::move(xyz_); }
-  bool is_full() const { return xyz_.size() == 3 * std::size_t{num_vertices()} * num_frames(); }
+  // xyz and exact: as of FrameEncoder::add_frame().
+  void add(std::span<const float> xyz, std::span<const double> exact) {
+    const bool has_exact = !exact.empty() || !exact_.empty();
+    if (has_exact && exact_.empty()) exact_.assign(xyz_.begin(), xyz_.end());
+    xyz_.insert(xyz_.end(), xyz.begin(), xyz.end());
+    if (!exact.empty()) {
+      exact_.insert(exact_.end(), exact.begin(), exact.end());
+    } else if (has_exact) {
+      exact_.insert(exact_.end(), xyz.begin(), xyz.end());
+    }
+  }
+  bool is_full() const { return frames_added() == num_frames(); }
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
     std::copy_n(&xyz_[frame * xyz.size()], xyz.size(), xyz.begin());
     return std::nullopt;
   }
+  std::optional<InputError> read_exact(std::uint32_t frame, std::span<double> xyz) override {
+    if (exact_.empty()) return FrameSource::read_exact(frame, xyz);
+    std::copy_n(&exact_[frame * xyz.size()], xyz.size(), xyz.begin());
+    return std::nullopt;
+  }
+  bool is_finer_than_floats() const override { return !exact_.empty(); }
 
  private:
+  std::uint32_t frames_added() const {
+    return static_cast<std::uint32_t>(xyz_.size() / (3 * std::size_t{num_vertices()}));
+  }
+
   std::vector<float> xyz_;
+  std::vector<double> exact_;
 };
 
 }  // namespace rlpc

@@ -16,8 +16,8 @@
 namespace rlpc {
 namespace {
 
-// Frames are held as floats until their span is encoded.
-constexpr SourceMemory kHeldFrames{.bytes_of_position = 3 * sizeof(float)};
+// Frames are held until their span is encoded.
+constexpr SourceMemory kHeldFrames{.bytes_of_position = 3 * (sizeof(float) + sizeof(double))};
 
 }  // namespace
 
@@ -90,14 +90,15 @@ double SpanEncoder::fixed_bits_per_frame() const {
   return 8.0 * static_cast<double>(bytes) / format_.num_frames;
 }
 
-std::optional<InputError> SpanEncoder::add_frame(std::span<const float> xyz) {
+std::optional<InputError> SpanEncoder::add_frame(std::span<const float> xyz,
+                                                 std::span<const double> exact) {
   if (failure_) return failure_;
-  if (auto error = check_frame(format_, num_added_, xyz)) return fail(*error);
+  if (auto error = check_frame(format_, num_added_, xyz, exact)) return fail(*error);
   if (!buffer_) {
     const std::uint32_t count = current().count;
     buffer_.emplace(format_.num_vertices, count);
   }
-  buffer_->add(xyz);
+  buffer_->add(xyz, exact);
   ++num_added_;
   ++num_held_;
   if (!buffer_->is_full()) return std::nullopt;
@@ -229,14 +230,15 @@ InputResult<EncodeReport> SpanEncoder::finish() {
   if (failure_) return *failure_;
   if (auto error = check_count(format_, num_added_)) return fail(*error);
   if (buffer_) {  // the rest of an open-ended stream
-    std::vector<float> rest = buffer_->take();
-    buffer_.emplace(format_.num_vertices, std::move(rest));
+    SpanBuffer rest(std::move(*buffer_));
+    buffer_.emplace(std::move(rest));
     if (auto error = encode_span()) return fail(*error);
   }
   stream_->write_end(out_.collector());
   EncodeReport& report = coded_.report;
   stream_->describe(coding_->header(), coding_->connectivity(), report);
   report.metrics = coded_.metrics.result();
+  report.largest_rounding = out_.largest_rounding();
   if (auto error = out_.finish(report.metrics, sink_)) return fail(*error);
   report.target_met = report.target_met && meets_rate(settings_.target, report);
   report.attributes = attributes_->reports();

@@ -31,7 +31,8 @@ class SpanEncoder final : public FrameCoder {
         coded_(format_.num_vertices) {}
 
   std::optional<InputError> prepare() override;
-  std::optional<InputError> add_frame(std::span<const float> xyz) override;
+  std::optional<InputError> add_frame(std::span<const float> xyz,
+                                      std::span<const double> exact) override;
   InputResult<EncodeReport> finish() override;
   std::uint32_t num_added() const override { return num_added_; }
 

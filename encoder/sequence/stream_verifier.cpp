@@ -95,11 +95,15 @@ std::optional<InputError> StreamVerifier::check_frame(std::span<const double> ex
   if (auto error = compare_without_loss(num_checked_ - 1, exact, decoded)) return error;
   metrics_.add_frame(exact, decoded);
   has_metrics_ = true;
+  note_rounding(exact);
+  return std::nullopt;
+}
+
+void StreamVerifier::note_rounding(std::span<const double> exact) {
   const std::vector<float> floats = nearest_floats(exact);
   for (std::size_t v = 0; v < header_.num_vertices; ++v) {
     largest_rounding_ = std::max(largest_rounding_, distance(exact, floats, v));
   }
-  return std::nullopt;
 }
 
 // A coordinate is the nearest float, or on a grid of a given number of bits, half a grid step
@@ -139,12 +143,12 @@ std::optional<InputError> StreamVerifier::check_frames(FrameSource& source, std:
 }
 
 std::optional<InputError> StreamVerifier::expect(std::span<const std::int32_t> positions,
-                                                 std::span<const float> original) {
+                                                 std::span<const double> exact) {
   const auto& input_vertex = settings_.keep_order ? output_vertex_ : input_vertex_;
-  const std::vector<double> exact(original.begin(), original.end());
   const auto frame = num_checked_ + static_cast<std::uint32_t>(expected_.size());
   const std::vector<float> decoded = in_input_order(header_.grid, positions, input_vertex);
   if (auto error = compare_without_loss(frame, exact, decoded)) return error;
+  note_rounding(exact);
   std::vector<std::int32_t> output(positions.begin(), positions.end());
   for (std::size_t v = 0; v < output_vertex_.size(); ++v) {
     std::copy_n(&positions[3 * v], 3, &output[3 * std::size_t{output_vertex_[v]}]);

@@ -37,10 +37,11 @@ class StreamVerifier {
                                          std::uint32_t count);
 
   // Where originals do not stay until their frame can be decoded: compares the positions, in
-  // decoded order, that the encoder expects of a frame with the original, and notes them;
+  // decoded order, that the encoder expects of a frame with the original, as check_frame() does
+  // with decoded ones, and notes them;
   // check_expected() then decodes all frames noted so far, and compares them with these.
   std::optional<InputError> expect(std::span<const std::int32_t> positions,
-                                   std::span<const float> original);
+                                   std::span<const double> exact);
   std::optional<InputError> check_expected();
 
   // After the last frame, once the stream is complete: checks its end, and that `reported` is
@@ -53,6 +54,7 @@ class StreamVerifier {
  private:
   InputError fault(const std::string& what) const;
   std::optional<InputError> decode();
+  void note_rounding(std::span<const double> exact);
   std::optional<InputError> compare_without_loss(std::uint32_t frame,
                                                  std::span<const double> exact,
                                                  std::span<const float> decoded) const;

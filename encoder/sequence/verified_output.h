@@ -32,6 +32,8 @@ class VerifiedOutput {
   // stream; others are decoded by one, which does not look ahead.
   StreamVerifier& verifier(const SequenceHeader& header, const ConnectivityCode& connectivity,
                            std::uint32_t threads);
+  // As of StreamVerifier.
+  double largest_rounding() const { return verifier_ ? verifier_->largest_rounding() : 0.0; }
   // Passes on what has been collected, and verified by the caller. Error: the sink failed.
   std::optional<InputError> pass_on(const ByteSink& sink);
   // Verifies the end of the stream, and passes it on.

@@ -62,12 +62,6 @@ double rounding_in(const FrameFormat& format) {
   return 0.5 * std::sqrt(3.0) * spacing;
 }
 
-// The encoder sees floats: leaves it what their rounding leaves of the error.
-void leave_room(double rounding, Target& target) {
-  constexpr double kLeast = 1e-30;  // fixed: a target that is out of reach, but valid
-  target.value = std::max(target.value - rounding, kLeast);
-}
-
 InputResult<LowDelayReport> finish(FrameEncoder& encoder, std::optional<InputError> stopped) {
   if (stopped && encoder.num_added() == 0) return *stopped;
   auto report = encoder.finish();
@@ -82,30 +76,30 @@ InputResult<LowDelayReport> encode_low_delay(FrameSource& source, const EncodeOp
   FrameFormat format{source.num_vertices(), source.num_frames(), source.frame_rate(),
                      source.triangles(), source.attributes()};
   std::vector<float> xyz(3 * std::size_t{format.num_vertices});
+  std::vector<double> exact(source.is_finer_than_floats() ? xyz.size() : 0);
   BoxOfFrames box;
   for (std::uint32_t f = 0; f < format.num_frames && !options.box; ++f) {
     if (auto error = source.read_frame(f, xyz)) return *error;
     box.add(xyz);
   }
   use_box(options.box.value_or(box.box()), format);
-  EncoderSettings settings = options.settings;
-  double rounding = 0.0;
-  if (settings.target.kind == Target::kMaxError) {
-    const auto largest = check_rounding(source, settings.target.value);
-    if (!largest) return largest.error();
-    rounding = *largest;
-    leave_room(rounding, settings.target);
+  const Target& target = options.settings.target;
+  if (target.kind == Target::kMaxError) {
+    const auto rounding = check_rounding(source, target.value);
+    if (!rounding) return rounding.error();
+    format.max_rounding = *rounding;
   }
-  auto encoder = FrameEncoder::create(format, settings, sink);
+  auto encoder = FrameEncoder::create(format, options.settings, sink);
   if (!encoder) return encoder.error();
   for (std::uint32_t f = 0; f < format.num_frames; ++f) {
     if (auto error = source.read_frame(f, xyz)) return *error;
-    if (auto error = encoder->add_frame(xyz)) return *error;
+    if (!exact.empty()) {
+      if (auto error = source.read_exact(f, exact)) return *error;
+    }
+    if (auto error = encoder->add_frame(xyz, exact)) return *error;
     progress(static_cast<double>(f + 1) / format.num_frames);
   }
-  auto encoded = finish(*encoder, std::nullopt);
-  if (encoded) encoded->report.largest_rounding = rounding;
-  return encoded;
+  return finish(*encoder, std::nullopt);
 }
 
 InputResult<LowDelayReport> encode_live(FrameStream& stream, const EncodeOptions& options,
@@ -121,29 +115,20 @@ InputResult<LowDelayReport> encode_live(FrameStream& stream, const EncodeOptions
   BoxOfFrames first;
   first.add(xyz);
   use_box(options.box.value_or(first.enlarged()), format);
-  EncoderSettings settings = options.settings;
-  double rounding = 0.0;
-  if (settings.target.kind == Target::kMaxError && shape.is_finer_than_floats) {
-    rounding = rounding_in(format);  // frames that are yet to come are within the box, too
-    leave_room(rounding, settings.target);
-  }
-  auto encoder = FrameEncoder::create(format, settings, sink);
+  // Frames that are yet to come are within the box, too.
+  if (!stream.exact().empty()) format.max_rounding = rounding_in(format);
+  auto encoder = FrameEncoder::create(format, options.settings, sink);
   if (!encoder) return encoder.error();
-  const auto finish_here = [&](std::optional<InputError> stopped) {
-    auto encoded = finish(*encoder, std::move(stopped));
-    if (encoded) encoded->report.largest_rounding = rounding;
-    return encoded;
-  };
   while (more && *more) {
-    if (auto error = encoder->add_frame(xyz)) {
+    if (auto error = encoder->add_frame(xyz, stream.exact())) {
       error->message = shape.name + ": " + error->message;
       if (!options.box) error->message += " (8 times the size of the first frame; see --box)";
-      return finish_here(std::move(error));
+      return finish(*encoder, std::move(error));
     }
     if (!flush()) return InputError{"the stream could not be written"};
     more = stream.next_frame(xyz);
   }
-  return finish_here(more ? std::nullopt : std::optional(more.error()));
+  return finish(*encoder, more ? std::nullopt : std::optional(more.error()));
 }
 
 }  // namespace rlpc

@@ -124,6 +124,11 @@ InputResult<std::vector<Triangle>> read_triangles(InputFile& file, const RlpdHea
   return parse_triangles(file.path(), header, bytes);
 }
 
+// Positions have up to 28 bits, floats 24.
+double exact_position(const Grid& grid, std::size_t axis, std::int32_t position) {
+  return (static_cast<double>(position) + grid.origin[axis]) * exact_exp2(grid.log2_step);
+}
+
 class RlpdSource : public FrameSource {
  public:
   RlpdSource(Shape shape, InputFile file, const RlpdHeader& header)
@@ -137,13 +142,10 @@ class RlpdSource : public FrameSource {
     }
     return check_finite(file_.path(), frame, xyz);
   }
-  // Positions have up to 28 bits, floats 24.
   std::optional<InputError> read_exact(std::uint32_t frame, std::span<double> xyz) override {
     if (auto error = read_bytes(frame)) return error;
     for (std::size_t i = 0; i < xyz.size(); ++i) {
-      const double steps =
-          static_cast<double>(load_i32(bytes_, 4 * i)) + header_.grid.origin[i % 3];
-      xyz[i] = steps * exact_exp2(header_.grid.log2_step);
+      xyz[i] = exact_position(header_.grid, i % 3, load_i32(bytes_, 4 * i));
     }
     return std::nullopt;
   }
@@ -201,16 +203,21 @@ class RlpdStream final : public FrameStream {
     bytes_.resize(4 * xyz.size());
     auto read = frames_.read(bytes_);
     if (!read || !*read) return read;
+    exact_.resize(xyz.size());
     for (std::size_t i = 0; i < xyz.size(); ++i) {
-      xyz[i] = float_position(grid_, i % 3, load_i32(bytes_, 4 * i));
+      const std::int32_t position = load_i32(bytes_, 4 * i);
+      xyz[i] = float_position(grid_, i % 3, position);
+      exact_[i] = exact_position(grid_, i % 3, position);
     }
     return true;
   }
+  std::span<const double> exact() const override { return exact_; }
 
  private:
   PipedFrames frames_;
   Grid grid_;
   std::vector<char> bytes_;
+  std::vector<double> exact_;
 };
 
 }  // namespace
@@ -240,7 +247,6 @@ InputResult<std::unique_ptr<FrameStream>> open_rlpd_stream(
   if (!triangles) return triangles.error();
   FrameStream::Shape shape{name, header->num_vertices, frame_rate.value_or(header->frame_rate),
                            std::move(*triangles)};
-  shape.is_finer_than_floats = true;
   return std::unique_ptr<FrameStream>(
       std::make_unique<RlpdStream>(std::move(shape), file, header->grid));
 }
