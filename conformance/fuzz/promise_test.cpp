@@ -3,9 +3,13 @@
 // The program `promises` tries as many as one likes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <random>
 #include <span>
 #include <string>
 #include <utility>
@@ -56,6 +60,55 @@ PromiseStream encode_for_test(const PromiseCase& c) {
   });
   if (report) stream.report = std::move(*report);
   return stream;
+}
+
+// A few vertices, each frame of them turned about another axis by any angle, or at rest: how
+// many bits they need depends on what is made of them more than on the step.
+PromiseCase turned_case(std::uint32_t seed) {
+  std::minstd_rand random(seed + 1);
+  const auto number = [&] { return static_cast<double>(random() % 2001) / 1000.0 - 1.0; };
+  PromiseCase c;
+  c.settings.profile = std::array{Profile::kBaseline, Profile::kMain, Profile::kHigh}[seed % 3];
+  c.shape.num_vertices = 3 + static_cast<std::uint32_t>(random() % 10);
+  c.shape.num_frames = 8 + static_cast<std::uint32_t>(random() % 24);
+  c.shape.frame_rate = {30, 1};
+  for (std::uint32_t v = 2; v < c.shape.num_vertices; ++v) {
+    c.shape.triangles.push_back({v - 2, v - 1, v});
+  }
+  std::vector<double> rest(3 * c.shape.num_vertices);
+  for (double& x : rest) x = number();
+  for (std::uint32_t f = 0; f < c.shape.num_frames; ++f) {
+    std::vector<double>& frame = c.frames.emplace_back(rest);
+    if (f == 0 || random() % 3 == 0) continue;
+    const std::size_t axis = random() % 3;
+    const double angle = 3.0 * number();
+    for (std::size_t i = 0; i < frame.size(); i += 3) {
+      const double x = rest[i + axis];
+      const double y = rest[i + (axis + 1) % 3];
+      frame[i + axis] = x * std::cos(angle) - y * std::sin(angle);
+      frame[i + (axis + 1) % 3] = x * std::sin(angle) + y * std::cos(angle);
+    }
+  }
+  return c;
+}
+
+// A rate that is missed is lower than any that the same animation has at another target.
+TEST(Promises, OnlyRatesOutOfReachAreMissed) {
+  int missed = 0;
+  for (std::uint32_t seed = 0; seed < 36; ++seed) {
+    PromiseCase c = turned_case(seed);
+    double lowest = std::numeric_limits<double>::infinity();
+    std::vector<double> missed_rates;
+    for (const double rate : {3.0, 4.9, 8.0, 13.0, 21.0, 34.0, 55.0}) {
+      c.settings.target = {Target::kBpvf, rate};
+      const PromiseStream stream = encode_for_test(c);
+      lowest = std::min(lowest, stream.report.bpvf);
+      if (!stream.report.target_met) missed_rates.push_back(rate);
+    }
+    for (const double rate : missed_rates) EXPECT_LT(rate, lowest) << "seed " << seed;
+    missed += static_cast<int>(missed_rates.size());
+  }
+  EXPECT_GT(missed, 0);
 }
 
 // The checks themselves: what is planted is found.

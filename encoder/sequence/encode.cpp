@@ -25,7 +25,8 @@ struct Found {
 // Whether a result is at least as good as another.
 bool is_as_good(const Found& found, const Found& other, Target::Kind kind) {
   if (found.result.met != other.result.met) return found.result.met;
-  if (kind != Target::kBpvf) return found.bytes() <= other.bytes();
+  // Of rates that are too high, the lowest is the closest.
+  if (kind != Target::kBpvf || !found.result.met) return found.bytes() <= other.bytes();
   return found.result.trial.metrics.kg_error_percent <=
          other.result.trial.metrics.kg_error_percent;
 }

@@ -72,6 +72,11 @@ bool GofBatch::use_last_resort() {
   return true;
 }
 
+bool GofBatch::choose_again() {
+  for (Gof& gof : gofs_) gof.coder.reset();
+  return true;
+}
+
 bool GofBatch::uses_earlier_models() const {
   return std::any_of(gofs_.begin(), gofs_.end(),
                      [](const Gof& gof) { return gof.vertices == Vertices::kOfEarlier; });

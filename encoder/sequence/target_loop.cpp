@@ -125,9 +125,18 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
 
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch) {
   auto best = search_steps(task, batch, 0);
-  for (const auto& change : {&GofBatch::use_own_models, &GofBatch::use_last_resort}) {
-    if (!best || best->met || best->given_up || !(batch.*change)()) continue;
-    auto other = search_steps(task, batch, best->trials);
+  for (const auto& change :
+       {&GofBatch::use_own_models, &GofBatch::choose_again, &GofBatch::use_last_resort}) {
+    if (!best || best->met || best->given_up) break;
+    TargetTask again = task;
+    if (change == &GofBatch::choose_again) {
+      // Clusters and components that were chosen at a fine step may need more than a low rate
+      // has at any step.
+      if (task.settings.target.kind != Target::kBpvf) continue;
+      again.first_step = best->step;
+    }
+    if (!(batch.*change)()) continue;
+    auto other = search_steps(again, batch, best->trials);
     if (!other) return other;
     const std::uint32_t trials = other->trials;
     const bool closer = other->met || other->measured < best->measured;

@@ -134,8 +134,11 @@ void TargetSearch::choose_next(double measured, const Expected& expected) {
   constexpr double kBeyond = 1e9;  // fixed: more, or less, does not matter
   const double value = std::clamp(measured, target_.value / kBeyond, target_.value * kBeyond);
   power_law_.add(step_, value, 1.0 / kSteepest, kSteepest);
-  const double factor =
-      std::clamp(factor_to(aim(), value, expected), 1.0 / kFarthest, kFarthest);
+  // Where nothing changes from step to step, each goes twice as far as the one before.
+  num_equal_ = measured == last_measured_ ? num_equal_ + 1 : 0;
+  last_measured_ = measured;
+  const double far = exact_exp2(num_equal_) * det_log2(factor_to(aim(), value, expected));
+  const double factor = det_exp2(std::clamp(far, -det_log2(kFarthest), det_log2(kFarthest)));
   const double next = std::clamp(step_ * factor, kFinestStep, kCoarsestStep);
   if (next == step_) finished_ = true;  // at the finest or coarsest step
   step_ = next;

@@ -75,6 +75,8 @@ class TargetSearch {
   BestEncoding best_;
   Bracket bracket_;
   PowerLaw power_law_;
+  double last_measured_ = -1.0;  // below 0: none yet
+  int num_equal_ = 0;            // encodings before with the same
   bool is_costly_ = false;
   int trials_ = 0;
   bool was_interpolated_ = false;  // the current step, in a narrow bracket
