@@ -82,6 +82,7 @@ export class RLPCMesh extends Mesh {
     const playback = new Playback({
       frames, frameRate, interpolates, ahead: stream.ahead,
       request: (index, signal) => stream.frames.acquire(index, signal),
+      peek: (index) => stream.frames.hold(index),
       discard: (frame) => stream.frames.release(frame),
       failed: (error, index) => this.#failed(error, index),
     });

@@ -276,6 +276,46 @@ for (const loop of ["repeat", "once", "pingpong"]) {
   });
 }
 
+/** How far the time of a playback is from that of a clip, in intervals. */
+function timeOff({ seconds, frameRate, count, speed }, played, loop) {
+  const duration = (count - 1) / frameRate;
+  const within = timeInClip(played, duration, loop);
+  const off = frameRate * Math.abs(seconds - (speed < 0 ? duration - within : within));
+  return loop === "once" ? off : Math.min(off, Math.abs(count - 1 - off)); // the end is the start
+}
+
+// hasAll: frames are in memory; otherwise, each is decoded before the next picture.
+for (const loop of ["repeat", "once", "pingpong"]) {
+  for (const hasAll of [false, true]) {
+    test(`TimeNeverWaitsForFramesThatAreThere (${loop}, in memory: ${hasAll})`, async () => {
+      const below = random(11);
+      for (let i = 0; i < 60; ++i) {
+        const interpolates = i % 2 === 0;
+        const frameRate = [24, 25, 30000 / 1001, 12.5][below(4)];
+        const playback = new Playback({ frames: 40, frameRate, ahead: 1 + below(4), interpolates,
+          request: (index) => Promise.resolve({ index }),
+          peek: (index) => (hasAll ? { index } : undefined) });
+        playback.setSpeed([1, -1, 0.5, -2][below(4)]);
+        playback.setLoop(loop);
+        playback.setRange(below(20), 2 + below(i < 30 ? 4 : 18));
+        playback.play();
+        await settled();
+        playback.tick(0);
+        let played = 0;
+        for (let j = 0; j < 60; ++j) {
+          await settled();
+          const most = hasAll ? 3 : 0.45; // intervals
+          const delta = most * (below(1000) / 1000) / frameRate / Math.abs(playback.speed);
+          playback.tick(delta);
+          played += delta * Math.abs(playback.speed);
+          const off = timeOff(playback, played, loop);
+          assert.ok(off < 1e-6, `${loop} ${playback.count} frames, ahead ${playback.ahead}: ${off}`);
+        }
+      }
+    });
+  }
+}
+
 test("SeekingToATimeShowsTheNearestFrameAndKeepsTheTime", () => {
   const playback = new Playback({ frames: 100, frameRate: 10, request: () => new Promise(() => {}) });
   playback.setRange(20, 11);
