@@ -163,12 +163,14 @@ class Loader(InScene):
         self.browser.screenshot(self.folder / "texture.png")
 
     def test_it_looks_as_gltf_loader_shows_the_source(self):
+        """A box that turns: one that leans has normals that are some degrees off."""
+        self.encode_box("turning", turns=True)
         pixels = self.run_script("""
             const hemisphere = Array.from({ length: 400 }, (_, i) =>
               [(i % 20) / 40 - 0.25, Math.floor(i / 20) / 40 - 0.25]);
             const all = [];
-            const mesh = await show('box.rlpc');
-            const gltf = (await new GLTFLoader().loadAsync('box.glb')).scene;
+            const mesh = await show('turning.rlpc');
+            const gltf = (await new GLTFLoader().loadAsync('turning.glb')).scene;
             for (const one of [gltf, mesh]) {
               one.scale.copy(mesh.scale);
               one.position.copy(mesh.position);
