@@ -502,11 +502,14 @@ class Loader(InScene):
     def test_the_crowd(self):
         self.browser.open(f"{self.server.address}/node_modules/rlpc/examples/crowd.html"
                           "?src=/walk.rlpc&count=200&layers=5")
-        self.browser.wait_for("globalThis.pictureRate > 0")
+        self.browser.wait_for("globalThis.measured?.rate > 0")
         told = self.browser.evaluate("document.getElementById('told').textContent")
         print(f"in Chromium, drawn by the processor: {told}")
         self.browser.screenshot(self.folder / "crowd.png")
         self.assertIn("200 clones", told)
+        measured = self.browser.evaluate("globalThis.measured")
+        self.assertGreater(measured["decoded"], 10)
+        self.assertLessEqual(measured["decoded"], len(self.frames))  # each once, for all clones
 
     def test_the_example(self):
         self.browser.open(f"{self.server.address}/node_modules/rlpc/examples/index.html"

@@ -43,6 +43,7 @@ export class Playback {
   }
 
   setSpeed(speed) {
+    if (!Number.isFinite(speed)) throw new RangeError("the speed is a finite number");
     const turns = speed < 0 !== this.speed < 0;
     const { seconds } = this;
     this.speed = speed;
@@ -155,6 +156,7 @@ export class Playback {
   }
 
   goTo(wanted) {
+    if (Number.isNaN(wanted)) throw new RangeError("a time is a number");
     const last = this.count - 1;
     const place = Math.min(Math.max(wanted, 0), last);
     this.time = exactPlace(this.speed < 0 ? last - place : place); // in intervals
@@ -225,9 +227,10 @@ export class Playback {
     this.pump();
   }
 
-  /** Lets time pass. Returns { index, frame } to show now, if that is new; without a frame if it
-   * cannot be decoded. */
+  /** Lets time pass; below 0, none does. Returns { index, frame } to show now, if that is new;
+   * without a frame if it cannot be decoded. */
   tick(seconds) {
+    if (!Number.isFinite(seconds)) throw new RangeError("the time that has passed is a finite number");
     let shown;
     if (!this.isShown) {
       if (!this.playing && !this.isReady) return undefined;
@@ -236,7 +239,7 @@ export class Playback {
       return shown;
     }
     if (!this.playing) return undefined;
-    this.time += seconds * this.frameRate * Math.abs(this.speed);
+    this.time += this.intervalsIn(Math.max(0, seconds));
     while (!this.isAtEnd) {
       const next = this.startOf(this.current + 1);
       if (next > this.time) break;
@@ -260,14 +263,24 @@ export class Playback {
     return shown;
   }
 
+  /** Intervals to play in so many seconds. After a long rest, say of a page that was hidden, one
+   * turn is played, and those before it are left out. */
+  intervalsIn(seconds) {
+    const { count, frameRate, loop, speed } = this;
+    const intervals = Math.min(seconds * frameRate * Math.abs(speed), Number.MAX_SAFE_INTEGER);
+    if (loop === "once") return intervals;
+    const turn = (loop === "repeat" ? 1 : 2) * (count - 1);
+    return intervals < 2 * turn ? intervals : turn + intervals % turn;
+  }
+
   startOf(step) {
     return this.interpolates ? timeOfStep(step, this.count, this.loop) - kExact
       : startOfStep(step, this.count, this.loop);
   }
 
-  /** Whether the step is the first one of a turn. */
+  /** Whether the step is the first one of another turn. */
   get isAtTurn() {
-    return this.current % (this.loop === "repeat" ? this.count : this.count - 1) === 0;
+    return this.loop !== "once" && this.current % (this.loop === "repeat" ? this.count : this.count - 1) === 0;
   }
 
   take(step) {

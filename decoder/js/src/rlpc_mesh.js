@@ -195,13 +195,17 @@ export class RLPCMesh extends Mesh {
     return this;
   }
 
-  /** Returns a clip, which may be given by name: the first that has it. */
+  /** Returns a clip, which may be given by name, the first that has it, or be that of another mesh
+   * of the stream. */
   #found(wanted) {
     if (wanted === null || this.clips.includes(wanted)) return wanted;
-    const clip = this.clips.find(({ name }) => name === wanted);
+    const clip = this.clips.find(({ name, firstFrame, frames }) => name === wanted ||
+      name === wanted.name && firstFrame === wanted.firstFrame && frames === wanted.frames);
     if (clip) return clip;
     const names = this.clips.map(({ name }) => `"${name}"`).join(", ");
-    throw new RangeError(`no clip "${wanted?.name ?? wanted}"; there are ${names || "none"}`);
+    throw new RangeError(typeof wanted === "string"
+      ? `no clip "${wanted}"; there are ${names || "none"}`
+      : "a clip is one of `clips`, its name, or null for the whole sequence");
   }
 
   #choose(clip) {

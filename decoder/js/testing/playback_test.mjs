@@ -316,6 +316,54 @@ for (const loop of ["repeat", "once", "pingpong"]) {
   }
 }
 
+for (const loop of ["repeat", "once", "pingpong"]) {
+  test(`ALongRestTakesOneTurn (${loop})`, async () => {
+    const playback = new Playback({ frames: 10, frameRate: 10, interpolates: true,
+      request: () => new Promise(() => {}), peek: (index) => ({ index }) });
+    let turns = 0;
+    playback.looped = () => ++turns;
+    playback.setLoop(loop);
+    playback.play();
+    playback.tick(0);
+    for (const rest of [3600.2, 1e300]) playback.tick(rest);
+    assert.ok(turns <= 8, `${turns}`);
+    assert.equal(turns > 0, loop !== "once");
+    assert.equal(playback.playing, loop !== "once");
+    if (loop === "once") return;
+    playback.setRange(0, 10);
+    playback.play();
+    playback.tick(0);
+    playback.tick(3600.25);
+    assert.ok(timeOff(playback, 3600.25, loop) < 1e-6);
+  });
+}
+
+test("TimesAreNumbersAndDoNotGoBack", async () => {
+  const playback = playing(10, 10, "repeat");
+  await settled();
+  playback.tick(0);
+  playback.tick(0.12);
+  for (const wrong of [NaN, Infinity, undefined]) assert.throws(() => playback.tick(wrong), RangeError);
+  for (const wrong of [NaN, Infinity, "2"]) assert.throws(() => playback.setSpeed(wrong), RangeError);
+  for (const wrong of [NaN, undefined]) {
+    assert.throws(() => playback.seekSeconds(wrong), RangeError);
+  }
+  playback.tick(-5); // pictures may have been asked for before the clock was read
+  assert.ok(Math.abs(playback.seconds - 0.12) < 1e-9);
+});
+
+test("OnlyWhatRepeatsTurns", async () => {
+  const playback = playing(3, 10, "once");
+  let turns = 0;
+  playback.looped = () => ++turns;
+  await settled();
+  for (let i = 0; i < 20; ++i) {
+    playback.tick(0.05);
+    await settled();
+  }
+  assert.deepEqual([turns, playback.playing], [0, false]);
+});
+
 test("SeekingToATimeShowsTheNearestFrameAndKeepsTheTime", () => {
   const playback = new Playback({ frames: 100, frameRate: 10, request: () => new Promise(() => {}) });
   playback.setRange(20, 11);
