@@ -56,10 +56,10 @@ class Buffer:
         return len(self.accessors) - 1
 
 
-def box(colour=None, rows=ROWS, material=None, turns=False):
+def box(colour=None, rows=ROWS, material=None, turns=False, uv_sets=1):
     """The bytes of the GLB. colour: of all vertices, instead of the texture. rows: of the texture.
     material: members of that of all faces but the last, instead of the base colour. turns: it does
-    not lean, but turns."""
+    not lean, but turns. uv_sets: equal sets of texture coordinates."""
     buffer = Buffer()
     position, normal, uv, indices = [], [], [], []
     for towards, right, up in FACES:
@@ -75,7 +75,8 @@ def box(colour=None, rows=ROWS, material=None, turns=False):
     if colour:
         attributes["COLOR_0"] = buffer.floats([colour] * len(position), "VEC3")
     else:
-        attributes["TEXCOORD_0"] = buffer.floats(uv, "VEC2")
+        for number in range(uv_sets):
+            attributes[f"TEXCOORD_{number}"] = buffer.floats(uv, "VEC2")
     return leaning(buffer, position, attributes, (indices[:30], indices[30:]),
                    {"rows": None if colour else rows, "material": material, "turns": turns})
 

@@ -66,7 +66,7 @@ export class ShownStream {
     const { look, decoder } = this;
     const level = new Level({ layers: Infinity, distance: 0, hysteresis: 0,
       count: look?.drawn.vertices.length ?? decoder.info.vertices, places: look?.places });
-    if (look) setAttributes(level.shared, look.drawn);
+    if (look) setAttributes(level.shared, look.drawn, look.equalUvs);
     level.shared.setIndex(new BufferAttribute(look?.drawn.indices ?? decoder.indices, 1));
     return level;
   }
@@ -123,7 +123,7 @@ export class ShownStream {
     const places = !look.whole ? surface.places : indicesIn(decoder.coarseVertices,
       surface.places.map((place) => whole.drawn.vertices[place]));
     const level = new Level({ ...options, count: places.length, places });
-    setAttributes(level.shared, surface);
+    setAttributes(level.shared, surface, look.equalUvs);
     this.#group(level.shared, surface);
     return level;
   }
