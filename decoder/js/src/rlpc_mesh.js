@@ -298,6 +298,9 @@ export class RLPCMesh extends Mesh {
   }
 
   copy(source, recursive) {
+    if (!(#stream in source) || source.#stream !== this.#stream) {
+      throw new TypeError("copy() takes a mesh of the same stream");
+    }
     Object3D.prototype.copy.call(this, source, recursive);
     this.material = Array.isArray(source.material) ? source.material.slice() : source.material;
     this.animations = [...source.animations];

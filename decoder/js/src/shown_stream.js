@@ -89,10 +89,14 @@ export class ShownStream {
   }
 
   /** Adds a coarse mesh of the vertices of `layers` vertex layers. */
-  async addLevel({ layers, distance = 0, hysteresis = 0 }) {
+  async addLevel({ layers, distance = 0, hysteresis = 0 } = {}) {
     const { decoder, look, levels } = this;
     if (!Number.isInteger(layers) || layers < 1) {
       throw new RangeError("layers is a whole number, from 1 on");
+    }
+    if (!(distance >= 0)) throw new RangeError("distance is a number, from 0 on");
+    if (!(hysteresis >= 0 && hysteresis < 1)) {
+      throw new RangeError("hysteresis is a number from 0 to below 1");
     }
     const coarse = await RlpcDecoder.open(decoder, { coarseLayers: layers });
     const { indices, coarseVertices, info } = coarse;
