@@ -154,7 +154,7 @@ class Loader(InScene):
         pixels = self.run_script(f"""
             {script}
             lookAtFront();
-            return {places}.map(([x, y]) => pixel(x, y));""")
+            return pixels({places});""")
         return [COLOURS.get(tuple(value > 90 for value in pixel[:3]), "other") for pixel in pixels]
 
     def test_a_texture_is_the_right_way_up(self):
@@ -178,7 +178,7 @@ class Loader(InScene):
               scene.add(one);
               camera.position.set(1, 2, 4);
               camera.lookAt(0, 0, 0);
-              all.push(hemisphere.map(([x, y]) => pixel(x, y)));
+              all.push(pixels(hemisphere));
             }
             return all;""")
         differing = [a for a, b in zip(*pixels) if max(abs(x - y) for x, y in zip(a, b)) > 4]
