@@ -108,7 +108,8 @@ export class RLPCMesh extends Mesh<BufferGeometry, Material | Material[], RLPCMe
    * with an AbortError after dispose(). */
   ready(): Promise<void>;
   /** A new AnimationClip of a clip, or of the whole sequence, for actions of this mesh and its clones:
-   * to blend a clip with itself. */
+   * to blend a clip with itself. To be kept and used again: it ends with the last mesh of the
+   * stream. */
   makeAnimation(clip: string | Clip | null): AnimationClip;
 
   /** Adds a coarser mesh of the same stream, for this mesh and its clones, with texture coordinates
