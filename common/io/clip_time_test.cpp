@@ -31,6 +31,24 @@ TEST(ClipTime, IsHeldAtTheEndOrStartsAgain) {
   EXPECT_LT(clip_place(rate, 11, infinity, true), 10.0);
 }
 
+TEST(ClipTime, RoundedTimesOfFramesAreThoseOfFrames) {
+  for (const FrameRate rate : {FrameRate{30, 1}, {30000, 1001}, {24, 1}, {7, 3}, {997, 991}}) {
+    for (std::uint32_t k = 0; k < 1000; ++k) {
+      const double seconds =
+          static_cast<double>(k) / (static_cast<double>(rate.numerator) / rate.denominator);
+      for (const double time :
+           {seconds, std::nextafter(seconds, 0.0), std::nextafter(seconds, 1e9)}) {
+        ASSERT_EQ(clip_place(rate, 1001, time, false), k);
+        ASSERT_EQ(clip_place(rate, 101, time, true), k % 100);
+      }
+      const double middle = (k + 0.5) * rate.denominator / rate.numerator;
+      for (const double time : {middle, std::nextafter(middle, 0.0)}) {
+        ASSERT_EQ(nearest_frame(clip_place(rate, 1001, time, false)), k + 1);
+      }
+    }
+  }
+}
+
 TEST(ClipTime, RandomPlacesAreWithinTheClip) {
   std::mt19937 random(3);
   const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random()) % n; };
@@ -44,8 +62,9 @@ TEST(ClipTime, RandomPlacesAreWithinTheClip) {
     ASSERT_GE(place, 0.0);
     ASSERT_LT(place, last);
     const double off = std::abs(place - std::fmod(intervals, last));
-    ASSERT_LT(std::min(off, last - off), 1e-15 * intervals + 1e-9);
-    ASSERT_EQ(clip_place(rate, num_frames, seconds, false), std::min(intervals, last));
+    ASSERT_LT(std::min(off, last - off), 1e-15 * intervals + 1.1e-6);
+    ASSERT_NEAR(clip_place(rate, num_frames, seconds, false), std::min(intervals, last),
+                1.1e-6);
   }
 }
 

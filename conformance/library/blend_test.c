@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "conformance/library/c_testing.h"
 #include "decoder/c_api/rlpc_decode.h"
 #include "encoder/c_api/rlpc_encode.h"
 
@@ -15,27 +16,7 @@
 #define TRIANGLES (2 * (SIDE - 1) * (SIDE - 1))
 #define FRAMES 24
 
-static int failures = 0;
-
-#define CHECK(condition)                                                      \
-  do {                                                                        \
-    if (!(condition)) {                                                       \
-      fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #condition); \
-      ++failures;                                                             \
-    }                                                                         \
-  } while (0)
-
-static unsigned char stream[1 << 18];
-static size_t stream_size;
 static size_t reads;  // of the stream, by the decoder
-
-static int append(void* user, const void* bytes, size_t num_bytes) {
-  (void)user;
-  if (num_bytes > sizeof stream - stream_size) return 1;
-  memcpy(stream + stream_size, bytes, num_bytes);
-  stream_size += num_bytes;
-  return 0;
-}
 
 // A sheet that waves.
 static void make_frame(int frame, float* xyz) {
@@ -50,52 +31,33 @@ static void make_frame(int frame, float* xyz) {
 
 static void encode(void) {
   static uint32_t indices[3 * TRIANGLES];
-  uint32_t* next = indices;
-  for (uint32_t row = 0; row + 1 < SIDE; ++row) {
-    for (uint32_t column = 0; column + 1 < SIDE; ++column) {
-      const uint32_t a = row * SIDE + column;
-      const uint32_t quad[6] = {a, a + 1, a + SIDE, a + SIDE, a + 1, a + SIDE + 1};
-      memcpy(next, quad, sizeof quad);
-      next += 6;
-    }
-  }
+  make_grid(SIDE, SIDE, 0, indices);
   rlpc_frame_format format;
   rlpc_frame_format_init(&format, sizeof format);
   format.num_vertices = VERTICES;
   format.num_triangles = TRIANGLES;
   format.indices = indices;
   format.num_frames = FRAMES;
-  for (int c = 0; c < 3; ++c) {
-    format.box_min[c] = -1;
-    format.box_max[c] = 2;
-  }
   rlpc_encode_options options;
   rlpc_encode_options_init(&options, sizeof options);
   options.gof_frames = 8;
   options.target = RLPC_TARGET_MAX_ERROR;
   options.target_value = 1e-3;
-  rlpc_encoder* encoder;
-  CHECK(rlpc_encoder_create(&format, &options, append, NULL, &encoder) == RLPC_OK);
   float xyz[VALUES];
-  for (int f = 0; f < FRAMES; ++f) {
-    make_frame(f, xyz);
-    CHECK(rlpc_encoder_add_frame(encoder, xyz, VALUES) == RLPC_OK);
-  }
-  CHECK(rlpc_encoder_finish(encoder, NULL, 0) == RLPC_OK);
-  rlpc_encoder_close(encoder);
+  encode_frames(&format, &options, -1, 2, make_frame, xyz);
 }
 
 static int read_stream(void* user, uint64_t offset, void* out, size_t num_bytes) {
   (void)user;
   ++reads;
-  memcpy(out, stream + offset, num_bytes);
+  memcpy(out, encoded + offset, num_bytes);
   return 0;
 }
 
 static rlpc_decoder* open_stream(void) {
   rlpc_source source;
   source.user = NULL;
-  source.size = stream_size;
+  source.size = encoded_size;
   source.read = read_stream;
   rlpc_decoder* decoder;
   CHECK(rlpc_decoder_open_source(&source, NULL, &decoder) == RLPC_OK);
@@ -211,7 +173,7 @@ static void test_frames_are_decoded_once(void) {
     options.max_cached_bytes = 0;
     rlpc_source source;
     source.user = NULL;
-    source.size = stream_size;
+    source.size = encoded_size;
     source.read = read_stream;
     rlpc_decoder* decoder;
     CHECK(rlpc_decoder_open_source(&source, &options, &decoder) == RLPC_OK);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "conformance/library/c_testing.h"
 #include "decoder/c_api/rlpc_decode.h"
 #include "encoder/c_api/rlpc_encode.h"
 
@@ -11,16 +12,6 @@
 #define VALUES (3 * VERTICES)
 #define TRIANGLES 10
 #define FRAMES 20
-
-static int failures = 0;
-
-#define CHECK(condition)                                                      \
-  do {                                                                        \
-    if (!(condition)) {                                                       \
-      fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #condition); \
-      ++failures;                                                             \
-    }                                                                         \
-  } while (0)
 
 #define CHECK_TEXT(text, part)                                                     \
   do {                                                                             \

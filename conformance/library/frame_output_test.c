@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "conformance/library/c_testing.h"
 #include "decoder/c_api/rlpc_decode.h"
 #include "encoder/c_api/rlpc_encode.h"
 
@@ -13,25 +14,11 @@
 #define FRAMES 6
 #define STRIDE 29
 
-static int failures = 0;
-
-#define CHECK(condition)                                                      \
-  do {                                                                        \
-    if (!(condition)) {                                                       \
-      fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #condition); \
-      ++failures;                                                             \
-    }                                                                         \
-  } while (0)
-
-static unsigned char stream[1 << 14];
-static size_t stream_size;
-
-static int append(void* user, const void* bytes, size_t num_bytes) {
-  (void)user;
-  if (num_bytes > sizeof stream - stream_size) return 1;
-  memcpy(stream + stream_size, bytes, num_bytes);
-  stream_size += num_bytes;
-  return 0;
+// x along the edge; the small triangle goes up y, the large one up z.
+static void make_frame(int frame, float* xyz) {
+  const float f = (float)frame;
+  const float values[3 * VERTICES] = {f, 0, 0, 2.0F + f, 0, 0, f, 1, 0, f, 0, 4};
+  memcpy(xyz, values, sizeof values);
 }
 
 static void encode(void) {
@@ -42,26 +29,14 @@ static void encode(void) {
   format.num_triangles = TRIANGLES;
   format.indices = indices;
   format.num_frames = FRAMES;
-  for (int c = 0; c < 3; ++c) {
-    format.box_min[c] = -1;
-    format.box_max[c] = 10;
-  }
   rlpc_encode_options options;
   rlpc_encode_options_init(&options, sizeof options);
   options.keep_order = 1;
   options.gof_frames = 2;
   options.target = RLPC_TARGET_MAX_ERROR;
   options.target_value = 1e-4;
-  rlpc_encoder* encoder;
-  CHECK(rlpc_encoder_create(&format, &options, append, NULL, &encoder) == RLPC_OK);
-  for (int f = 0; f < FRAMES; ++f) {
-    // x along the edge; the small triangle goes up y, the large one up z.
-    const float xyz[3 * VERTICES] = {(float)f, 0, 0, 2.0F + (float)f, 0, 0,
-                                     (float)f, 1, 0, (float)f,        0, 4};
-    CHECK(rlpc_encoder_add_frame(encoder, xyz, 3 * VERTICES) == RLPC_OK);
-  }
-  CHECK(rlpc_encoder_finish(encoder, NULL, 0) == RLPC_OK);
-  rlpc_encoder_close(encoder);
+  float xyz[3 * VERTICES];
+  encode_frames(&format, &options, -1, 10, make_frame, xyz);
 }
 
 static rlpc_decoder* decoder;
@@ -295,7 +270,7 @@ static void test_one_vertex(void) {
 
 int main(void) {
   encode();
-  CHECK(rlpc_decoder_open_memory(stream, stream_size, NULL, &decoder) == RLPC_OK);
+  CHECK(rlpc_decoder_open_memory(encoded, encoded_size, NULL, &decoder) == RLPC_OK);
   float least[3], most[3];
   CHECK(rlpc_decoder_bounds(decoder, least, most) == RLPC_BAD_ARGUMENT);
   test_positions();

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "conformance/library/c_testing.h"
 #include "decoder/c_api/rlpc_decode.h"
 #include "encoder/c_api/rlpc_encode.h"
 
@@ -17,27 +18,6 @@
 #define FRAMES 40
 #define MAX_BONES 256
 #define MAX_SLOTS 16
-
-static int failures = 0;
-
-#define CHECK(condition)                                                      \
-  do {                                                                        \
-    if (!(condition)) {                                                       \
-      fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #condition); \
-      ++failures;                                                             \
-    }                                                                         \
-  } while (0)
-
-static unsigned char stream[1 << 20];
-static size_t stream_size;
-
-static int append(void* user, const void* bytes, size_t num_bytes) {
-  (void)user;
-  if (num_bytes > sizeof stream - stream_size) return 1;
-  memcpy(stream + stream_size, bytes, num_bytes);
-  stream_size += num_bytes;
-  return 0;
-}
 
 // A tube of two bones, which blend in its middle. It turns and moves along.
 static void make_frame(int frame, float* xyz) {
@@ -57,41 +37,21 @@ static void make_frame(int frame, float* xyz) {
 
 static void encode(uint32_t profile) {
   static uint32_t indices[3 * TRIANGLES];
-  uint32_t* next = indices;
-  for (uint32_t ring = 0; ring + 1 < RINGS; ++ring) {
-    for (uint32_t i = 0; i < AROUND; ++i) {
-      const uint32_t a = ring * AROUND + i, b = ring * AROUND + (i + 1) % AROUND;
-      const uint32_t quad[6] = {a, b, a + AROUND, a + AROUND, b, b + AROUND};
-      memcpy(next, quad, sizeof quad);
-      next += 6;
-    }
-  }
+  make_grid(RINGS, AROUND, 1, indices);
   rlpc_frame_format format;
   rlpc_frame_format_init(&format, sizeof format);
   format.num_vertices = VERTICES;
   format.num_triangles = TRIANGLES;
   format.indices = indices;
   format.num_frames = FRAMES;
-  for (int c = 0; c < 3; ++c) {
-    format.box_min[c] = -4;
-    format.box_max[c] = 6;
-  }
   rlpc_encode_options options;
   rlpc_encode_options_init(&options, sizeof options);
   options.profile = profile;
   options.gof_frames = FRAMES;
   options.target = RLPC_TARGET_MAX_ERROR;
   options.target_value = 0.01;
-  rlpc_encoder* encoder;
-  stream_size = 0;
-  CHECK(rlpc_encoder_create(&format, &options, append, NULL, &encoder) == RLPC_OK);
   static float xyz[VALUES];
-  for (int f = 0; f < FRAMES; ++f) {
-    make_frame(f, xyz);
-    CHECK(rlpc_encoder_add_frame(encoder, xyz, VALUES) == RLPC_OK);
-  }
-  CHECK(rlpc_encoder_finish(encoder, NULL, 0) == RLPC_OK);
-  rlpc_encoder_close(encoder);
+  encode_frames(&format, &options, -4, 6, make_frame, xyz);
 }
 
 static rlpc_decoder* decoder;
@@ -236,7 +196,7 @@ static void test_refusals(void) {
 }
 
 static void open_stream(void) {
-  CHECK(rlpc_decoder_open_memory(stream, stream_size, NULL, &decoder) == RLPC_OK);
+  CHECK(rlpc_decoder_open_memory(encoded, encoded_size, NULL, &decoder) == RLPC_OK);
 }
 
 int main(void) {

@@ -354,7 +354,7 @@ rlpc_status rlpc_decoder_frame_at(rlpc_decoder* decoder, const rlpc_clip* clip, 
     if (!span) return RLPC_BAD_ARGUMENT;
     const double within = rlpc::clip_place(decoder->decoder->header().frame_rate,
                                            span->num_frames, seconds, repeats == 1);
-    *frame = span->first_frame + static_cast<std::uint32_t>(within + 0.5);
+    *frame = span->first_frame + rlpc::nearest_frame(within);
     if (place != nullptr) *place = span->first_frame + within;
     return RLPC_OK;
   });

@@ -166,22 +166,37 @@ class Attributes(InFolder):
         self.assertEqual(told["drawn"], 24)  # three at each corner of the box
         self.assertEqual([one["name"] for one in told["sets"]], ["material", "normal", "uv0"])
 
-    def test_normals_of_a_frame_are_those_of_rlpcdec(self):
-        stream = self.encode_box("leans")
-        told, = self.in_node([stream])
-        done = run("rlpcdec", "-q", stream, "-o", self.folder / "leans-%d.ply", "--ascii")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        ply = (self.folder / f"leans-{textured_box.FRAMES - 1}.ply").read_text()
+    def normals_of_ply(self, pattern, frame, count):
+        ply = (self.folder / pattern.replace("%d", str(frame))).read_text()
         header, _, rows = ply.partition("end_header\n")
         first = re.findall(r"property float (\w+)", header).index("nx")
-        native = [[float(word) for word in row.split()[first:first + 3]]
-                  for row in rows.splitlines()[:told["drawn"]]]
-        ours = [told["normals"][i:i + 3] for i in range(0, len(told["normals"]), 3)]
-        self.assertEqual(len(native), len(ours))
-        for some, others in ((native, ours), (ours, native)):
-            for normal in some:
-                self.assertLess(min(math.dist(normal, other) for other in others), 1e-6)
-        self.assertGreater(sum(0.2 < abs(y) < 0.8 for _, y, _ in ours), 5)  # it has been deformed
+        return [[float(word) for word in row.split()[first:first + 3]]
+                for row in rows.splitlines()[:count]]
+
+    def furthest(self, some, others):
+        """How far a vector of one list is from the nearest of the other at most."""
+        return max(min(math.dist(a, b) for b in others) for a in some)
+
+    def test_normals_of_a_frame_are_those_of_rlpcdec(self):
+        """Where the surface turns, they turn; where it leans, they follow the source, which has the
+        same normals in all frames, as near as normals that follow a surface can."""
+        last = textured_box.FRAMES - 1
+        for name, turns in (("leans", False), ("turns", True)):
+            stream = self.encode_box(name, turns=turns)
+            told, = self.in_node([stream])
+            done = run("rlpcdec", "-q", stream, "-o", self.folder / f"{name}-%d.ply", "--ascii")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            native = self.normals_of_ply(f"{name}-%d.ply", last, told["drawn"])
+            ours = [told["normals"][i:i + 3] for i in range(0, len(told["normals"]), 3)]
+            self.assertEqual(len(native), len(ours))
+            for some, others in ((native, ours), (ours, native)):
+                self.assertLess(self.furthest(some, others), 1e-6)
+            before = self.normals_of_ply(f"{name}-%d.ply", 0, told["drawn"])
+            self.assertGreater(self.furthest(ours, before), 0.1)  # another frame has others
+            cos, sin = ((f(last * textured_box.TURN) if turns else f(0)) for f in (math.cos, math.sin))
+            source = [(cos * x - sin * y, sin * x + cos * y, z)
+                      for (x, y, z), _, _ in textured_box.FACES]
+            self.assertLess(self.furthest(ours, source), 0.01 if turns else 0.15)
 
 
 if __name__ == "__main__":

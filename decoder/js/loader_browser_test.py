@@ -154,7 +154,7 @@ class Loader(InScene):
         pixels = self.run_script(f"""
             {script}
             lookAtFront();
-            return {places}.map(([x, y]) => pixel(x, y));""")
+            return pixels({places});""")
         return [COLOURS.get(tuple(value > 90 for value in pixel[:3]), "other") for pixel in pixels]
 
     def test_a_texture_is_the_right_way_up(self):
@@ -163,12 +163,14 @@ class Loader(InScene):
         self.browser.screenshot(self.folder / "texture.png")
 
     def test_it_looks_as_gltf_loader_shows_the_source(self):
+        """A box that turns: one that leans has normals that are some degrees off."""
+        self.encode_box("turning", turns=True)
         pixels = self.run_script("""
             const hemisphere = Array.from({ length: 400 }, (_, i) =>
               [(i % 20) / 40 - 0.25, Math.floor(i / 20) / 40 - 0.25]);
             const all = [];
-            const mesh = await show('box.rlpc');
-            const gltf = (await new GLTFLoader().loadAsync('box.glb')).scene;
+            const mesh = await show('turning.rlpc');
+            const gltf = (await new GLTFLoader().loadAsync('turning.glb')).scene;
             for (const one of [gltf, mesh]) {
               one.scale.copy(mesh.scale);
               one.position.copy(mesh.position);
@@ -176,7 +178,7 @@ class Loader(InScene):
               scene.add(one);
               camera.position.set(1, 2, 4);
               camera.lookAt(0, 0, 0);
-              all.push(hemisphere.map(([x, y]) => pixel(x, y)));
+              all.push(pixels(hemisphere));
             }
             return all;""")
         differing = [a for a, b in zip(*pixels) if max(abs(x - y) for x, y in zip(a, b)) > 4]
@@ -500,11 +502,14 @@ class Loader(InScene):
     def test_the_crowd(self):
         self.browser.open(f"{self.server.address}/node_modules/rlpc/examples/crowd.html"
                           "?src=/walk.rlpc&count=200&layers=5")
-        self.browser.wait_for("globalThis.pictureRate > 0")
+        self.browser.wait_for("globalThis.measured?.rate > 0")
         told = self.browser.evaluate("document.getElementById('told').textContent")
         print(f"in Chromium, drawn by the processor: {told}")
         self.browser.screenshot(self.folder / "crowd.png")
         self.assertIn("200 clones", told)
+        measured = self.browser.evaluate("globalThis.measured")
+        self.assertGreater(measured["decoded"], 10)
+        self.assertLessEqual(measured["decoded"], len(self.frames))  # each once, for all clones
 
     def test_the_example(self):
         self.browser.open(f"{self.server.address}/node_modules/rlpc/examples/index.html"

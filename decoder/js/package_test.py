@@ -147,6 +147,25 @@ class Files(InFolder):
         self.assertEqual(told[0], "source")
         self.assertIn("no such.rlpc", told[1])
 
+    def test_equal_texture_coordinates_are_there_again(self):
+        """The encoder codes one of them, and the loader makes one attribute of them."""
+        self.encode_box("equal", uv_sets=3)
+        for options in ("{}", "{ material: new MeshBasicMaterial() }", "{ textures: false }"):
+            told = self.run_script(f"""
+                const {{ MeshBasicMaterial }} = await import("three");
+                const decoder = await RlpcDecoder.open("equal.rlpc");
+                const coded = [...(await decoder.attributes()).keys()];
+                decoder.close();
+                const mesh = await new RLPCLoader().setOptions({options}).loadAsync("equal.rlpc");
+                const {{ attributes }} = mesh.geometry;
+                const names = Object.keys(attributes).sort();
+                const isOne = attributes.uv === attributes.uv1 && attributes.uv === attributes.uv2;
+                mesh.dispose();
+                return {{ coded, names, isOne }};""")
+            self.assertEqual(told["coded"], ["material", "normal", "uv0"])
+            self.assertEqual(told["names"], ["normal", "position", "uv", "uv1", "uv2"])
+            self.assertTrue(told["isOne"])
+
     def test_levels_have_the_positions_and_values_of_the_whole_mesh(self):
         """On a tube, u is the angle in turns: texture coordinates of all triangles fit."""
         self.encode_glb("tube", textured_box.tube(24, 36))

@@ -11,6 +11,7 @@ import tempfile
 import time
 
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
+PATIENCE = 300  # seconds: pictures are drawn by the processor, which may be busy
 
 
 def program():
@@ -80,7 +81,7 @@ class Chromium:
             raise RuntimeError(f"{expression}: {reply['exceptionDetails']}")
         return reply["result"].get("value")
 
-    def wait_for(self, expression, seconds=60):
+    def wait_for(self, expression, seconds=PATIENCE):
         """Until it is true in the page."""
         end = time.monotonic() + seconds
         while not self.evaluate(expression):
@@ -121,7 +122,7 @@ class Chromium:
 
     def _next_message(self):
         while b"\0" not in self._received:
-            if not select.select([self._replies], [], [], 60)[0]:
+            if not select.select([self._replies], [], [], PATIENCE)[0]:
                 raise TimeoutError("the browser does not answer")
             data = os.read(self._replies, 1 << 20)
             if not data:

@@ -1,4 +1,5 @@
-"""Small animations with a texture, as GLBs: a box from -1 to 1 that leans over, and a tube."""
+"""Small animations with a texture, as GLBs: a box from -1 to 1 that leans over or turns, and a
+tube."""
 
 import json
 import math
@@ -14,6 +15,7 @@ ROWS = ((RED, GREEN), (BLUE, WHITE))  # of the texture on each face, from the to
 COLOURS_AROUND = (RED, GREEN, BLUE, WHITE)
 MAGENTA = [1, 0, 1, 1]  # of the face without a texture
 FRAMES = 5
+TURN = 0.3  # radians around z, from one frame to the next, of what turns
 CLAMP, REPEAT = 33071, 10497
 
 
@@ -54,9 +56,10 @@ class Buffer:
         return len(self.accessors) - 1
 
 
-def box(colour=None, rows=ROWS, material=None):
+def box(colour=None, rows=ROWS, material=None, turns=False, uv_sets=1):
     """The bytes of the GLB. colour: of all vertices, instead of the texture. rows: of the texture.
-    material: members of that of all faces but the last, instead of the base colour."""
+    material: members of that of all faces but the last, instead of the base colour. turns: it does
+    not lean, but turns. uv_sets: equal sets of texture coordinates."""
     buffer = Buffer()
     position, normal, uv, indices = [], [], [], []
     for towards, right, up in FACES:
@@ -72,9 +75,10 @@ def box(colour=None, rows=ROWS, material=None):
     if colour:
         attributes["COLOR_0"] = buffer.floats([colour] * len(position), "VEC3")
     else:
-        attributes["TEXCOORD_0"] = buffer.floats(uv, "VEC2")
+        for number in range(uv_sets):
+            attributes[f"TEXCOORD_{number}"] = buffer.floats(uv, "VEC2")
     return leaning(buffer, position, attributes, (indices[:30], indices[30:]),
-                   {"rows": None if colour else rows, "material": material})
+                   {"rows": None if colour else rows, "material": material, "turns": turns})
 
 
 def tube(rings, around):
@@ -100,13 +104,20 @@ def tube(rings, around):
 
 def leaning(buffer, position, attributes, parts, look):
     """A GLB with two parts, lists of indices, of one mesh. look: rows of the texture (None: there is
-    none), wrap beyond it, material: members of that of the first part."""
+    none), wrap beyond it, material: members of that of the first part, turns: whether it turns
+    instead of leaning."""
     rows, material, wrap = look["rows"], look.get("material"), look.get("wrap", CLAMP)
     target = {"POSITION": buffer.floats([[0.5 * y, 0, 0] for _, y, _ in position], "VEC3")}
     primitives = [{"attributes": attributes, "targets": [target], "material": number,
                    "indices": buffer.indices(part)} for number, part in enumerate(parts)]
     times = buffer.floats([[f / 30] for f in range(FRAMES)], "SCALAR")
-    weights = buffer.floats([[f / FRAMES] for f in range(FRAMES)], "SCALAR")
+    if look.get("turns"):
+        path, kind = "rotation", "VEC4"
+        values = [[0, 0, math.sin(f * TURN / 2), math.cos(f * TURN / 2)] for f in range(FRAMES)]
+    else:
+        path, kind = "weights", "SCALAR"
+        values = [[f / FRAMES] for f in range(FRAMES)]
+    output = buffer.floats(values, kind)
     image = buffer.view(png(rows or ROWS))
     plain = {"metallicFactor": 0, "roughnessFactor": 1}
     texture = {"baseColorTexture": {"index": 0}} if rows else {}
@@ -116,8 +127,8 @@ def leaning(buffer, position, attributes, parts, look):
         "meshes": [{"primitives": primitives, "weights": [0]}],
         "materials": [material or {"pbrMetallicRoughness": {**plain, **texture}},
                       {"pbrMetallicRoughness": {**plain, "baseColorFactor": MAGENTA}}],
-        "animations": [{"samplers": [{"input": times, "output": weights}], "channels": [
-            {"sampler": 0, "target": {"node": 0, "path": "weights"}}]}],
+        "animations": [{"samplers": [{"input": times, "output": output}], "channels": [
+            {"sampler": 0, "target": {"node": 0, "path": path}}]}],
         "accessors": buffer.accessors, "bufferViews": buffer.views,
     }
     if rows:

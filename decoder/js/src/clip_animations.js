@@ -59,10 +59,21 @@ class PlaceInterpolant extends LinearInterpolant {
   }
 }
 
+const number = new Float32Array(1);
+const bits = new Uint32Array(number.buffer);
+
+/** The time of a key: the first 32-bit float that is not before it, so that it counts for those who
+ * multiply it by the frame rate, as AnimationUtils.subclip() does. */
+function timeOfKey(seconds) {
+  number[0] = seconds;
+  if (number[0] < seconds) ++bits[0];
+  return number[0];
+}
+
 /** clip: { name, frames }; duration: seconds. */
 export function clipAnimation(clip, slot, frameRate, duration) {
   const { name, frames } = clip;
-  const times = Float32Array.from({ length: frames }, (_, i) => i / frameRate);
+  const times = Float32Array.from({ length: frames }, (_, i) => timeOfKey(i / frameRate));
   const values = Float32Array.from({ length: 2 * frames }, (_, i) => (i % 2 === 0 ? i / 2 : 1));
   const track = new VectorKeyframeTrack(`.${poseName(slot)}`, times, values);
   track.createInterpolant = function createInterpolant(result) {

@@ -104,7 +104,8 @@ class OpenStream {
         return call();
       } catch (missing) {
         if (!(missing instanceof MissingBytes)) throw missing;
-        const [start, end] = this.widened(missing);
+        // Of a stream that comes from its start to its end, no more is waited for than is needed.
+        const [start, end] = this.source.whole ? [missing.start, missing.end] : this.widened(missing);
         await this.source.load(start, end, signal);
       }
     }
@@ -255,10 +256,15 @@ export class Engine {
       ? openSource(source, (loaded, size) => this.post({ stream, loaded, size }))
       : this.streams.get(shared).source;
     const opened = new OpenStream(from, options);
-    // Of its own for each: one whose memory is exhausted is lost.
-    const result = await opened.open(await WasmDecoder.create(module), signal);
-    this.streams.set(stream, opened);
-    return result;
+    try {
+      // Of its own for each: one whose memory is exhausted is lost.
+      const result = await opened.open(await WasmDecoder.create(module), signal);
+      this.streams.set(stream, opened);
+      return result;
+    } catch (error) {
+      this.leave(from);
+      throw error;
+    }
   }
 
   frame(message, signal) {
@@ -286,6 +292,13 @@ export class Engine {
   }
 
   close({ stream }) {
+    const source = this.streams.get(stream)?.source;
     this.streams.delete(stream);
+    if (source) this.leave(source);
+  }
+
+  /** Ends what a source loads, once no stream uses it. */
+  leave(source) {
+    if (![...this.streams.values()].some((other) => other.source === source)) source.close?.();
   }
 }

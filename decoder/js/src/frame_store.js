@@ -54,13 +54,17 @@ export class FrameStore {
     return frame;
   }
 
+  /** The frame if it is there, which is then kept until release(). */
+  hold(index) {
+    const frame = this.get(index);
+    if (frame) ++frame.users;
+    return frame;
+  }
+
   /** A promise of a frame, which is then kept until release(). */
   acquire(index, signal) {
-    const there = this.get(index);
-    if (there) {
-      ++there.users;
-      return Promise.resolve(there);
-    }
+    const there = this.hold(index);
+    if (there) return Promise.resolve(there);
     const request = this.#pending.get(index) ?? this.#start(index);
     ++request.waiting;
     return new Promise((resolve, reject) => {

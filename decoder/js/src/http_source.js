@@ -1,6 +1,6 @@
 // A stream on a server: in ranges (RFC 9110, 14), or whole where the server has none.
 import { ByteRanges } from "./byte_ranges.js";
-import { RlpcError } from "./error.js";
+import { aborted, RlpcError } from "./error.js";
 
 const kFirstBytes = 16384;
 const kMostCachedBytes = 256e6;
@@ -16,6 +16,13 @@ export class HttpSource {
     this.size = undefined;
     this.whole = undefined; // the promise of a stream that is loaded from its start to its end
     this.waiting = []; // for more of it
+    this.stop = new AbortController(); // of everything
+  }
+
+  /** Ends all that is loaded, also what nobody waits for. */
+  close() {
+    this.stop.abort(aborted("the decoder is closed"));
+    this.reader?.cancel().catch(() => {}); // of the whole stream
   }
 
   async open(signal) {
@@ -50,8 +57,10 @@ export class HttpSource {
     const headers = new Headers(this.headers);
     if (range) headers.set("Range", `bytes=${range[0]}-${range[1] - 1}`);
     let response;
+    const either = signal ? AbortSignal.any([signal, this.stop.signal]) : this.stop.signal;
     try {
-      response = await fetch(this.url, { method, headers, credentials: this.credentials, signal });
+      response = await fetch(this.url,
+        { method, headers, credentials: this.credentials, signal: either });
     } catch (failure) {
       if (failure.name === "AbortError") throw failure;
       throw this.error(`cannot be reached (${failure.message})`);
@@ -126,10 +135,12 @@ export class HttpSource {
 
   async readWhole(response) {
     const reader = response.body.getReader();
+    this.reader = reader;
     for (let start = 0; ; ) {
       const { done, value } = await reader.read().catch((failure) => {
         throw this.error(`the connection was lost (${failure.message})`);
       });
+      this.stop.signal.throwIfAborted();
       if (done) {
         if (this.size !== undefined && this.size !== start) {
           throw this.error(`the server sent ${start} bytes instead of ${this.size}`);

@@ -164,6 +164,14 @@ export interface Frame {
   error?: RlpcError;
 }
 
+type OptionalArray = "integers" | "normals" | "coordinates";
+type ArraysOf<O> = { [K in OptionalArray]: O extends { [P in K]: true } ? K : never }[OptionalArray];
+
+/** A frame with the arrays that its options ask for. */
+export type FrameOf<O> =
+  Omit<Frame, ArraysOf<O> | (O extends { positions: false } ? "positions" : never)> &
+  Required<Pick<Frame, ArraysOf<O>>>;
+
 export interface FramesOptions extends Omit<FrameOptions, "into" | "replace"> {
   first?: number;
   /** The last frame; usually that of the sequence. */
@@ -194,11 +202,10 @@ export class RlpcDecoder {
   readonly gridStep: number;
 
   /** A frame, in any order. Rejects with an RlpcError if it cannot be decoded; others can. */
-  frame(index: number, options?: FrameOptions & { positions?: true }): Promise<Frame>;
-  frame(index: number, options: FrameOptions & { positions: false }):
-    Promise<Omit<Frame, "positions">>;
+  frame<O extends FrameOptions = FrameOptions>(index: number, options?: O): Promise<FrameOf<O>>;
   /** Frames in order, decoded ahead. */
-  frames(options?: FramesOptions): AsyncGenerator<Frame, void, undefined>;
+  frames<O extends FramesOptions = FramesOptions>(options?: O):
+    AsyncGenerator<FrameOf<O>, void, undefined>;
   /** Texture coordinates, normals, colours, materials and others, by name; empty if the stream has
    * none. Loads the first frame. Frames can be decoded even if it rejects. */
   attributes(): Promise<ReadonlyMap<string, Attribute>>;
@@ -248,6 +255,8 @@ export class Playback<F = Frame> {
     /** Whether `following` and `fraction` matter: then time waits until both frames are there. */
     interpolates?: boolean;
     request: (index: number, signal: AbortSignal) => Promise<F>;
+    /** A frame that is there already: it is then not requested. */
+    peek?: (index: number) => F | undefined;
     /** Takes frames that are not wanted any more. */
     discard?: (frame: F) => void;
     failed?: (error: unknown, index: number) => void;
@@ -283,7 +292,7 @@ export class Playback<F = Frame> {
   seekSeconds(seconds: number): void;
   /** Ends all requests. */
   cancel(): void;
-  /** Lets time pass. Returns what is to be shown now, if that is new; without a frame if it
+  /** Lets time pass; below 0, none does. Returns what is to be shown now, if that is new; without a frame if it
    * cannot be decoded. */
   tick(seconds: number): { index: number; frame?: F } | undefined;
 }

@@ -6,21 +6,24 @@
 //
 // If it interpolates, a step begins where its frame is exact, and `following` and `fraction` are
 // what to show until the next one begins. Time then waits at a frame until the next is there.
-import { clipSeconds, nearestFrame, placeAt, startOfStep, timeOfStep } from "./clip_time.js";
+import {
+  clipSeconds, exactPlace, kExact, nearestFrame, placeAt, startOfStep, timeOfStep,
+} from "./clip_time.js";
 import { aborted } from "./error.js";
 
 const kInFlight = 2; // one is decoded while another travels
 const kShortOf = 0.001; // intervals, where time waits for a frame
-const kExact = 1e-6; // intervals: a time that near to that of a frame is equal to it
+const kMinAhead = 2; // between frames: the next, and the one that is needed from there on
 
 export const kLoops = ["repeat", "once", "pingpong"];
 
 export class Playback {
-  /** request(index, signal): a promise of a frame. discard(frame) takes those that are not wanted
-   * any more; failed(error, index) those that cannot be had, without which playing goes on. */
-  constructor({ frames, frameRate, ahead = 4, interpolates = false, request, discard = () => {},
-    failed = () => {} }) {
-    Object.assign(this, { frames, frameRate, ahead, interpolates, request, discard, failed });
+  /** request(index, signal): a promise of a frame. peek(index): the frame, if no promise is needed
+   * for it. discard(frame) takes those that are not wanted any more; failed(error, index) those that
+   * cannot be had, without which playing goes on. */
+  constructor({ frames, frameRate, ahead = 4, interpolates = false, request,
+    peek = () => undefined, discard = () => {}, failed = () => {} }) {
+    Object.assign(this, { frames, frameRate, ahead, interpolates, request, peek, discard, failed });
     this.speed = 1; // below 0: backwards
     this.loop = "repeat";
     this.playing = false;
@@ -40,6 +43,7 @@ export class Playback {
   }
 
   setSpeed(speed) {
+    if (!Number.isFinite(speed)) throw new RangeError("the speed is a finite number");
     const turns = speed < 0 !== this.speed < 0;
     const { seconds } = this;
     this.speed = speed;
@@ -118,8 +122,7 @@ export class Playback {
 
   /** How far on the way to the following frame, from 0 to 1. */
   get fraction() {
-    const { passed } = this;
-    return passed > kExact ? Math.min(passed, 1) : 0;
+    return Math.min(Math.max(exactPlace(this.passed), 0), 1);
   }
 
   /** Whether the last frame is shown, and no other follows. */
@@ -128,7 +131,7 @@ export class Playback {
   }
 
   get hasEnded() {
-    return this.isAtEnd && this.time >= this.count - 1;
+    return this.isAtEnd && exactPlace(this.time) >= this.count - 1;
   }
 
   /** A still mesh does not play. What has ended starts again. */
@@ -153,9 +156,10 @@ export class Playback {
   }
 
   goTo(wanted) {
+    if (Number.isNaN(wanted)) throw new RangeError("a time is a number");
     const last = this.count - 1;
     const place = Math.min(Math.max(wanted, 0), last);
-    this.time = this.speed < 0 ? last - place : place; // in intervals
+    this.time = exactPlace(this.speed < 0 ? last - place : place); // in intervals
     this.current = this.interpolates // the step
       ? Math.floor(this.time + kExact) : nearestFrame(this.time);
     this.next = this.current; // to be asked for
@@ -177,8 +181,16 @@ export class Playback {
    * then the one that is shown comes again. */
   get wanted() {
     if (!this.playing) return (this.isShown ? 0 : 1) + (this.needsNext ? 1 : 0);
-    const ahead = Math.max(1, Math.min(this.ahead, this.count - 1));
-    return this.loop === "once" ? Math.min(ahead, this.count - this.next) : ahead;
+    const ahead = this.interpolates ? Math.max(kMinAhead, this.ahead) + this.turnsWithin(this.ahead)
+      : Math.max(1, Math.min(this.ahead, this.count - 1));
+    if (this.loop !== "once") return ahead;
+    return Math.min(ahead, this.ready.size + this.waiting + this.count - this.next);
+  }
+
+  /** 1 if a turn of "repeat" ends within so many steps: two steps begin at the same time there. */
+  turnsWithin(steps) {
+    const { count, current, loop } = this;
+    return loop === "repeat" && current % count + Math.max(kMinAhead, steps) >= count ? 1 : 0;
   }
 
   pump() {
@@ -189,10 +201,16 @@ export class Playback {
     }
   }
 
-  async ask(step) {
+  ask(step) {
+    const index = this.indexAt(step);
+    const frame = this.peek(index);
+    if (frame) this.ready.set(step, { index, frame });
+    else this.wait(step, index);
+  }
+
+  async wait(step, index) {
     ++this.waiting;
     const { controller } = this;
-    const index = this.indexAt(step);
     let frame;
     try {
       frame = await this.request(index, controller.signal);
@@ -209,9 +227,10 @@ export class Playback {
     this.pump();
   }
 
-  /** Lets time pass. Returns { index, frame } to show now, if that is new; without a frame if it
-   * cannot be decoded. */
+  /** Lets time pass; below 0, none does. Returns { index, frame } to show now, if that is new;
+   * without a frame if it cannot be decoded. */
   tick(seconds) {
+    if (!Number.isFinite(seconds)) throw new RangeError("the time that has passed is a finite number");
     let shown;
     if (!this.isShown) {
       if (!this.playing && !this.isReady) return undefined;
@@ -220,10 +239,11 @@ export class Playback {
       return shown;
     }
     if (!this.playing) return undefined;
-    this.time += seconds * this.frameRate * Math.abs(this.speed);
+    this.time += this.intervalsIn(Math.max(0, seconds));
     while (!this.isAtEnd) {
       const next = this.startOf(this.current + 1);
       if (next > this.time) break;
+      this.pump();
       if (!this.ready.has(this.current + 1)) {
         this.time = next - kShortOf;
         break;
@@ -232,6 +252,7 @@ export class Playback {
       shown = this.take(++this.current);
       if (this.isAtTurn) this.looped();
     }
+    this.pump();
     const waits = this.interpolates && !this.isAtEnd && !this.ready.has(this.current + 1);
     if (waits) this.time = Math.min(this.time, timeOfStep(this.current, this.count, this.loop));
     if (this.hasEnded) {
@@ -239,8 +260,17 @@ export class Playback {
       this.pause();
       this.finished();
     }
-    this.pump();
     return shown;
+  }
+
+  /** Intervals to play in so many seconds. After a long rest, say of a page that was hidden, one
+   * turn is played, and those before it are left out. */
+  intervalsIn(seconds) {
+    const { count, frameRate, loop, speed } = this;
+    const intervals = Math.min(seconds * frameRate * Math.abs(speed), Number.MAX_SAFE_INTEGER);
+    if (loop === "once") return intervals;
+    const turn = (loop === "repeat" ? 1 : 2) * (count - 1);
+    return intervals < 2 * turn ? intervals : turn + intervals % turn;
   }
 
   startOf(step) {
@@ -248,9 +278,9 @@ export class Playback {
       : startOfStep(step, this.count, this.loop);
   }
 
-  /** Whether the step is the first one of a turn. */
+  /** Whether the step is the first one of another turn. */
   get isAtTurn() {
-    return this.current % (this.loop === "repeat" ? this.count : this.count - 1) === 0;
+    return this.loop !== "once" && this.current % (this.loop === "repeat" ? this.count : this.count - 1) === 0;
   }
 
   take(step) {

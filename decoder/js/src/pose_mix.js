@@ -1,8 +1,7 @@
 // Which frames a mesh shows, and with which weights: those of the actions of an AnimationMixer, and
 // of its own playback. A place between two frames shows both; frames that are not there are asked for.
-import { nearestFrame } from "./clip_time.js";
+import { exactPlace, nearestFrame } from "./clip_time.js";
 
-const kExact = 1e-6; // frames: places that near to a frame show that alone
 const kNothing = 1e-4; // weights below have no effect
 
 /** One picture of one mesh. */
@@ -68,9 +67,9 @@ export class PoseMix {
   addPose(mix, pose, { first, count }) {
     const { frames } = this.stream;
     const { weight } = pose;
-    const place = Math.min(Math.max(pose.place, 0), count - 1);
-    const at = this.interpolates ? Math.floor(place + kExact) : nearestFrame(place);
-    const fraction = place - at > kExact && this.interpolates ? place - at : 0;
+    const place = exactPlace(Math.min(Math.max(pose.place, 0), count - 1));
+    const at = this.interpolates ? Math.floor(place) : nearestFrame(place);
+    const fraction = this.interpolates ? place - at : 0;
     const index = first + at;
     const before = frames.get(index);
     const after = fraction > 0 ? frames.get(index + 1) : undefined;

@@ -82,6 +82,7 @@ export class RLPCMesh extends Mesh {
     const playback = new Playback({
       frames, frameRate, interpolates, ahead: stream.ahead,
       request: (index, signal) => stream.frames.acquire(index, signal),
+      peek: (index) => stream.frames.hold(index),
       discard: (frame) => stream.frames.release(frame),
       failed: (error, index) => this.#failed(error, index),
     });
@@ -194,13 +195,17 @@ export class RLPCMesh extends Mesh {
     return this;
   }
 
-  /** Returns a clip, which may be given by name: the first that has it. */
+  /** Returns a clip, which may be given by name, the first that has it, or be that of another mesh
+   * of the stream. */
   #found(wanted) {
     if (wanted === null || this.clips.includes(wanted)) return wanted;
-    const clip = this.clips.find(({ name }) => name === wanted);
+    const clip = this.clips.find(({ name, firstFrame, frames }) => name === wanted ||
+      name === wanted.name && firstFrame === wanted.firstFrame && frames === wanted.frames);
     if (clip) return clip;
     const names = this.clips.map(({ name }) => `"${name}"`).join(", ");
-    throw new RangeError(`no clip "${wanted?.name ?? wanted}"; there are ${names || "none"}`);
+    throw new RangeError(typeof wanted === "string"
+      ? `no clip "${wanted}"; there are ${names || "none"}`
+      : "a clip is one of `clips`, its name, or null for the whole sequence");
   }
 
   #choose(clip) {
@@ -293,6 +298,9 @@ export class RLPCMesh extends Mesh {
   }
 
   copy(source, recursive) {
+    if (!(#stream in source) || source.#stream !== this.#stream) {
+      throw new TypeError("copy() takes a mesh of the same stream");
+    }
     Object3D.prototype.copy.call(this, source, recursive);
     this.material = Array.isArray(source.material) ? source.material.slice() : source.material;
     this.animations = [...source.animations];

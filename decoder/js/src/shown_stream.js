@@ -66,7 +66,7 @@ export class ShownStream {
     const { look, decoder } = this;
     const level = new Level({ layers: Infinity, distance: 0, hysteresis: 0,
       count: look?.drawn.vertices.length ?? decoder.info.vertices, places: look?.places });
-    if (look) setAttributes(level.shared, look.drawn);
+    if (look) setAttributes(level.shared, look.drawn, look.equalUvs);
     level.shared.setIndex(new BufferAttribute(look?.drawn.indices ?? decoder.indices, 1));
     return level;
   }
@@ -89,10 +89,14 @@ export class ShownStream {
   }
 
   /** Adds a coarse mesh of the vertices of `layers` vertex layers. */
-  async addLevel({ layers, distance = 0, hysteresis = 0 }) {
+  async addLevel({ layers, distance = 0, hysteresis = 0 } = {}) {
     const { decoder, look, levels } = this;
     if (!Number.isInteger(layers) || layers < 1) {
       throw new RangeError("layers is a whole number, from 1 on");
+    }
+    if (!(distance >= 0)) throw new RangeError("distance is a number, from 0 on");
+    if (!(hysteresis >= 0 && hysteresis < 1)) {
+      throw new RangeError("hysteresis is a number from 0 to below 1");
     }
     const coarse = await RlpcDecoder.open(decoder, { coarseLayers: layers });
     const { indices, coarseVertices, info } = coarse;
@@ -123,7 +127,7 @@ export class ShownStream {
     const places = !look.whole ? surface.places : indicesIn(decoder.coarseVertices,
       surface.places.map((place) => whole.drawn.vertices[place]));
     const level = new Level({ ...options, count: places.length, places });
-    setAttributes(level.shared, surface);
+    setAttributes(level.shared, surface, look.equalUvs);
     this.#group(level.shared, surface);
     return level;
   }

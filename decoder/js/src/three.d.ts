@@ -22,8 +22,8 @@ export interface RLPCMeshOptions {
   /** Whether what is between two frames is shown: their linear mix. Usually true; false: the frame
    * that is nearest in time. */
   interpolate?: boolean;
-  /** Bytes for decoded frames that are kept, of a mesh and all its clones; usually 2^26. Two frames
-   * for each mesh that plays are kept in any case. */
+  /** Bytes for decoded frames that are kept, of a mesh and all its clones; usually 2^26. Up to
+   * four frames for each mesh that plays are kept in any case. */
   frameMemory?: number;
 }
 
@@ -99,7 +99,8 @@ export class RLPCMesh extends Mesh<BufferGeometry, Material | Material[], RLPCMe
   pause(): this;
   /** Back to the start. */
   stop(): this;
-  /** To be called for each picture, with the seconds since the last; actions of an AnimationMixer do
+  /** To be called for each picture, with the seconds since the last, a finite number; below 0, no time
+   * passes. Actions of an AnimationMixer do
    * not need it. With a camera, it also calls selectLevel(). Returns whether something else is shown
    * than before. */
   update(delta: number, camera?: Camera): boolean;
@@ -107,7 +108,8 @@ export class RLPCMesh extends Mesh<BufferGeometry, Material | Material[], RLPCMe
    * with an AbortError after dispose(). */
   ready(): Promise<void>;
   /** A new AnimationClip of a clip, or of the whole sequence, for actions of this mesh and its clones:
-   * to blend a clip with itself. */
+   * to blend a clip with itself. To be kept and used again: it ends with the last mesh of the
+   * stream. */
   makeAnimation(clip: string | Clip | null): AnimationClip;
 
   /** Adds a coarser mesh of the same stream, for this mesh and its clones, with texture coordinates

@@ -31,13 +31,13 @@ export async function loadLook(decoder,
   const { hasAttributes, hasAsset, damagedUnits } = decoder.info;
   if (damagedUnits > 0) warn("attributes, materials, clips or metadata are damaged, and left out");
   if (!attributes || !hasAttributes && !hasAsset) return undefined;
-  const wantsMaterials = hasAsset && !material;
   let whole;
   try {
     whole = decoder.coarseVertices ? await RlpcDecoder.open(decoder) : decoder;
-    const [drawn, sets, gltf] = await Promise.all([whole.drawn(), whole.attributes(),
-      wantsMaterials ? loadMaterials(decoder, textures, gltfLoader) : undefined]);
-    const look = { drawn, materialOf: sets.get("material"), gltf,
+    const [drawn, sets, asset] = await Promise.all([whole.drawn(), whole.attributes(),
+      hasAsset ? loadAsset(decoder) : undefined]);
+    const gltf = asset && !material ? await loadMaterials(asset, textures, gltfLoader) : undefined;
+    const look = { drawn, materialOf: sets.get("material"), gltf, equalUvs: equalUvsOf(asset),
       isFlat: gltf && !hasNormals(sets) };
     return decoder.coarseVertices ? coarseLook(look, decoder) : look;
   } catch (error) {
@@ -55,16 +55,19 @@ function coarseLook(whole, { indices, coarseVertices }) {
   return { ...whole, drawn, materialOf, places, whole };
 }
 
-/** The asset, as three's GLTFLoader reads it; undefined if it cannot. */
-async function loadMaterials(decoder, textures, gltfLoader) {
-  let asset;
+/** The asset, a GLB; null if there is none, undefined if it cannot be decoded. */
+async function loadAsset(decoder) {
   try {
-    asset = await decoder.asset();
+    return await decoder.asset();
   } catch (error) {
     if (error.kind !== "limit" && error.kind !== "invalid") throw error;
     warn(`materials are left out: ${error.message}`);
+    return undefined;
   }
-  if (!asset) return undefined; // or one of another format than GLB
+}
+
+/** The asset, as three's GLTFLoader reads it; undefined if it cannot. */
+async function loadMaterials(asset, textures, gltfLoader) {
   let loader = gltfLoader;
   if (!loader) {
     try {
@@ -88,12 +91,26 @@ async function loadMaterials(decoder, textures, gltfLoader) {
   }
 }
 
-/** The same materials, as the text of a glTF file. */
-function withoutTextures(glb) {
+function jsonOf(glb) {
   const size = new DataView(glb.buffer, glb.byteOffset).getUint32(kHeaderBytes, true);
   const start = kHeaderBytes + kChunkBytes;
-  const { asset, materials, extensionsUsed } =
-    JSON.parse(new TextDecoder().decode(glb.subarray(start, start + size)));
+  return JSON.parse(new TextDecoder().decode(glb.subarray(start, start + size)));
+}
+
+/** For each set of texture coordinates of the encoder's input, the number of the first that is
+ * equal, which alone is in the stream; empty if all differ. */
+function equalUvsOf(asset) {
+  try {
+    const equal = asset && jsonOf(asset).extras?.equal_uv;
+    return Array.isArray(equal) ? equal : [];
+  } catch { // of no GLB
+    return [];
+  }
+}
+
+/** The same materials, as the text of a glTF file. */
+function withoutTextures(glb) {
+  const { asset, materials, extensionsUsed } = jsonOf(glb);
   return JSON.stringify({ asset, materials, extensionsUsed },
     (key, value) => (key.endsWith("Texture") ? undefined : value));
 }
@@ -105,10 +122,16 @@ function nameInThree({ name, components }) {
   return name === "colour0" && components >= 3 ? "color" : undefined;
 }
 
-export function setAttributes(geometry, { attributes }) {
+/** equalUvs: of the look. Equal sets are one attribute with several names. */
+export function setAttributes(geometry, { attributes }, equalUvs) {
   for (const set of attributes.values()) {
     const name = nameInThree(set);
     if (name) geometry.setAttribute(name, new BufferAttribute(set.values, set.components));
+  }
+  for (const [number, first] of equalUvs.entries()) {
+    const [name, from] = [number, first].map((n) => nameInThree({ name: `uv${n}`, components: 2 }));
+    if (!name || geometry.attributes[name] || !geometry.attributes[from]) continue;
+    geometry.setAttribute(name, geometry.attributes[from]);
   }
 }
 

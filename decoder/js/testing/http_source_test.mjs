@@ -66,6 +66,22 @@ test("AllWhoWaitForPartsOfAWholeStreamGetThem", async () => {
   }
 });
 
+test("ClosingEndsWhatIsLoaded", async () => {
+  const sent = { pieces: 0, isCancelled: false };
+  const signals = [];
+  globalThis.fetch = async (_, { signal }) => {
+    signals.push(signal);
+    return new Response(inPieces(sent), { headers: { "content-length": `${kStream.length}` } });
+  };
+  const whole = source();
+  await whole.open();
+  const waits = whole.load(39000, 40000);
+  whole.close();
+  await assert.rejects(waits, { name: "AbortError" });
+  assert.ok(signals[0].aborted);
+  assert.ok(sent.isCancelled && sent.pieces < 4, `${sent.pieces}`);
+});
+
 test("ABodyOfMoreThanTheLimitIsCancelled", async () => {
   const sent = { pieces: 0, isCancelled: false };
   serve(() => new Response(inPieces(sent))); // of unknown length

@@ -80,5 +80,4 @@ for (const [index, clip] of mesh.clips.entries()) {
   });
 }
 mesh.dispose();
-console.log(JSON.stringify(told));
-process.exit(0);
+process.stdout.write(JSON.stringify(told), () => process.exit(0)); // once all of it is written

@@ -7,6 +7,7 @@ import {
   PerspectiveCamera, Raycaster, Vector3, VectorKeyframeTrack,
 } from "three";
 
+import { clipAnimation } from "../src/clip_animations.js";
 import { normalsOf, positionsOf, random, settled } from "./fake_decoder.mjs";
 import {
   assertBounds, assertNear, between, kClips, meshOf, positions,
@@ -229,6 +230,25 @@ test("PartsOfClipsAndStretchedClips", async () => {
   }
 });
 
+test("PartsBeginAtTheFrameThatIsAskedFor", () => {
+  for (const frameRate of [24, 25, 30, 60, 30000 / 1001, 12.5]) {
+    const whole = clipAnimation({ name: "a", frames: 60 }, 0, frameRate, 59 / frameRate);
+    for (let first = 0; first < 58; ++first) {
+      const { tracks: [{ values }] } =
+        AnimationUtils.subclip(whole, "part", first, first + 2, frameRate);
+      assert.deepEqual([values[0], values.length], [first, 4], `${frameRate}`);
+    }
+  }
+});
+
+test("OnlyMeshesOfTheSameStreamAreCopied", async () => {
+  const { mesh } = await meshOf();
+  const copy = mesh.clone();
+  copy.copy(mesh);
+  const { mesh: other } = await meshOf();
+  for (const wrong of [other, new Object3D()]) assert.throws(() => copy.copy(wrong), TypeError);
+});
+
 test("RaysHitWhatIsShownBetweenFrames", async () => {
   const { mesh } = await meshOf({ vertices: 3 });
   const next = random(11);
@@ -260,7 +280,10 @@ test("NormalsThatCancelOutAreThoseOfTheStrongerFrame", async () => {
 
 test("LevelsNeedADecoderThatHasThem", async () => {
   const { mesh } = await meshOf();
-  await assert.rejects(mesh.addLevel({ layers: 0 }), RangeError);
+  for (const wrong of [undefined, { layers: 0 }, { layers: 2.5 }, { layers: 1, distance: NaN },
+    { layers: 1, distance: -1 }, { layers: 1, hysteresis: 1 }, { layers: 1, hysteresis: NaN }]) {
+    await assert.rejects(mesh.addLevel(wrong), RangeError);
+  }
   assert.throws(() => {
     mesh.level = 1;
   }, RangeError);

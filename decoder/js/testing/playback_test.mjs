@@ -276,6 +276,94 @@ for (const loop of ["repeat", "once", "pingpong"]) {
   });
 }
 
+/** How far the time of a playback is from that of a clip, in intervals. */
+function timeOff({ seconds, frameRate, count, speed }, played, loop) {
+  const duration = (count - 1) / frameRate;
+  const within = timeInClip(played, duration, loop);
+  const off = frameRate * Math.abs(seconds - (speed < 0 ? duration - within : within));
+  return loop === "once" ? off : Math.min(off, Math.abs(count - 1 - off)); // the end is the start
+}
+
+// hasAll: frames are in memory; otherwise, each is decoded before the next picture.
+for (const loop of ["repeat", "once", "pingpong"]) {
+  for (const hasAll of [false, true]) {
+    test(`TimeNeverWaitsForFramesThatAreThere (${loop}, in memory: ${hasAll})`, async () => {
+      const below = random(11);
+      for (let i = 0; i < 60; ++i) {
+        const interpolates = i % 2 === 0;
+        const frameRate = [24, 25, 30000 / 1001, 12.5][below(4)];
+        const playback = new Playback({ frames: 40, frameRate, ahead: 1 + below(4), interpolates,
+          request: (index) => Promise.resolve({ index }),
+          peek: (index) => (hasAll ? { index } : undefined) });
+        playback.setSpeed([1, -1, 0.5, -2][below(4)]);
+        playback.setLoop(loop);
+        playback.setRange(below(20), 2 + below(i < 30 ? 4 : 18));
+        playback.play();
+        await settled();
+        playback.tick(0);
+        let played = 0;
+        for (let j = 0; j < 60; ++j) {
+          await settled();
+          const most = hasAll ? 3 : 0.45; // intervals
+          const delta = most * (below(1000) / 1000) / frameRate / Math.abs(playback.speed);
+          playback.tick(delta);
+          played += delta * Math.abs(playback.speed);
+          const off = timeOff(playback, played, loop);
+          assert.ok(off < 1e-6, `${loop} ${playback.count} frames, ahead ${playback.ahead}: ${off}`);
+        }
+      }
+    });
+  }
+}
+
+for (const loop of ["repeat", "once", "pingpong"]) {
+  test(`ALongRestTakesOneTurn (${loop})`, async () => {
+    const playback = new Playback({ frames: 10, frameRate: 10, interpolates: true,
+      request: () => new Promise(() => {}), peek: (index) => ({ index }) });
+    let turns = 0;
+    playback.looped = () => ++turns;
+    playback.setLoop(loop);
+    playback.play();
+    playback.tick(0);
+    for (const rest of [3600.2, 1e300]) playback.tick(rest);
+    assert.ok(turns <= 8, `${turns}`);
+    assert.equal(turns > 0, loop !== "once");
+    assert.equal(playback.playing, loop !== "once");
+    if (loop === "once") return;
+    playback.setRange(0, 10);
+    playback.play();
+    playback.tick(0);
+    playback.tick(3600.25);
+    assert.ok(timeOff(playback, 3600.25, loop) < 1e-6);
+  });
+}
+
+test("TimesAreNumbersAndDoNotGoBack", async () => {
+  const playback = playing(10, 10, "repeat");
+  await settled();
+  playback.tick(0);
+  playback.tick(0.12);
+  for (const wrong of [NaN, Infinity, undefined]) assert.throws(() => playback.tick(wrong), RangeError);
+  for (const wrong of [NaN, Infinity, "2"]) assert.throws(() => playback.setSpeed(wrong), RangeError);
+  for (const wrong of [NaN, undefined]) {
+    assert.throws(() => playback.seekSeconds(wrong), RangeError);
+  }
+  playback.tick(-5); // pictures may have been asked for before the clock was read
+  assert.ok(Math.abs(playback.seconds - 0.12) < 1e-9);
+});
+
+test("OnlyWhatRepeatsTurns", async () => {
+  const playback = playing(3, 10, "once");
+  let turns = 0;
+  playback.looped = () => ++turns;
+  await settled();
+  for (let i = 0; i < 20; ++i) {
+    playback.tick(0.05);
+    await settled();
+  }
+  assert.deepEqual([turns, playback.playing], [0, false]);
+});
+
 test("SeekingToATimeShowsTheNearestFrameAndKeepsTheTime", () => {
   const playback = new Playback({ frames: 100, frameRate: 10, request: () => new Promise(() => {}) });
   playback.setRange(20, 11);

@@ -27,7 +27,12 @@ export async function attributes(decoder: RlpcDecoder): Promise<number> {
   const { vertices, indices, attributes: values }: DrawnMesh = await decoder.drawn();
   const frame = await decoder.frame(3, { drawn: true, normals: true });
   const glb: Uint8Array | null = decoder.info.hasAsset ? await decoder.asset() : null;
-  return (corners?.length ?? 0) + vertices.length + indices.length + frame.positions.length +
+  const normals: Float32Array = frame.normals;
+  const plain: Frame = await decoder.frame(0);
+  // @ts-expect-error: without normals
+  const none: Float32Array = plain.normals;
+  for await (const { integers } of decoder.frames({ integers: true })) console.log(integers[0], none);
+  return normals.length + (corners?.length ?? 0) + vertices.length + indices.length + frame.positions.length +
     (values.get("uv0")?.values[0] ?? 0) + (glb?.length ?? 0) + (uv?.kind === "smoothing" ? 1 : 0);
 }
 
@@ -52,7 +57,8 @@ export async function show(scene: Scene, file: File): Promise<RLPCMesh> {
 
 export function playback(decoder: RlpcDecoder): Playback {
   const { frames, frameRate } = decoder.info;
-  return new Playback({ frames, frameRate, request: (index, signal) => decoder.frame(index, { signal }) });
+  return new Playback({ frames, frameRate, request: (index, signal) => decoder.frame(index, { signal }),
+    peek: () => undefined });
 }
 
 export async function crowd(scene: Scene, mesh: RLPCMesh, camera: PerspectiveCamera): Promise<number> {
