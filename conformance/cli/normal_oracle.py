@@ -8,6 +8,7 @@ from gltf_scene import cross, degrees, minus, unit
 
 SERVES = 0.3  # degrees: surfaces that are right within these are taken as they are
 POWERS = 7
+UNCERTAIN = 1e-12  # no rotation is the nearest (F.8.5)
 
 
 def dot(a, b):
@@ -46,6 +47,18 @@ class Decoded:
         self.corners = corners
 
 
+def product_of_gaps(m, q):
+    """Between the eigenvalue of q and the three others: the sum of the principal minors of the
+    matrix less that eigenvalue."""
+    largest = sum(q[i] * m[i][j] * q[j] for i in range(4) for j in range(4))
+    rest = [[(largest if i == j else 0.0) - m[i][j] for j in range(4)] for i in range(4)]
+    total = 0.0
+    for left_out in range(4):
+        rows = [[rest[i][j] for j in range(4) if j != left_out] for i in range(4) if i != left_out]
+        total += dot(rows[0], cross(rows[1], rows[2]))
+    return total
+
+
 def turn_between(before, after):
     """The rotation nearest to what turns some vectors into others, as rows (Horn 1987); None: none
     is nearest."""
@@ -57,14 +70,18 @@ def turn_between(before, after):
     xy, yz, zx = s[0][1] + s[1][0], s[1][2] + s[2][1], s[2][0] + s[0][2]
     m = [[s[0][0] + s[1][1] + s[2][2], x, y, z], [x, s[0][0] - s[1][1] - s[2][2], xy, zx],
          [y, xy, s[1][1] - s[0][0] - s[2][2], yz], [z, zx, yz, s[2][2] - s[0][0] - s[1][1]]]
-    m = [[m[i][j] / bound + (i == j) for j in range(4)] for i in range(4)]  # no root below 0
+    horn = [[x / bound for x in row] for row in m]
+    m = [[horn[i][j] + (i == j) for j in range(4)] for i in range(4)]  # no root below 0
     for _ in range(POWERS):
         m = [[sum(m[i][k] * m[k][j] for k in range(4)) for j in range(4)] for i in range(4)]
         size = max(m[i][i] for i in range(4))
         m = [[x / size for x in row] for row in m]
     best = max(range(4), key=lambda i: m[i][i])
     length = math.sqrt(sum(x * x for x in m[best]))
-    w, x, y, z = (value / length for value in m[best])
+    q = [x / length for x in m[best]]
+    if not abs(product_of_gaps(horn, q)) > UNCERTAIN:
+        return None
+    w, x, y, z = q
     return [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
             [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
             [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]

@@ -40,7 +40,7 @@ def by_number(scene, frame):
 # The promises, in degrees.
 LOST = 0.5     # RMS, by which errors may exceed the smallest ones, to save bytes
 ROUNDED = 0.6  # largest error of stored vectors
-BY_BONES = 4.0  # RMS of normals of .glb files, from those of the stream
+BY_BONES = 2.5  # RMS from the stream: 2 that targets may leave, and half a degree between keys
 COMPARED = range(0, FRAMES, 2)
 
 
@@ -103,9 +103,6 @@ class NormalsTest(ToolsTest):
     def check(self, name):
         comparison = Comparison(self, name)
         smallest = comparison.smallest()
-        if __import__("os").environ.get("DBG"):
-            print("%.2f %.2f | %.2f" % (smallest, comparison.of_stream(), comparison.of_bones()), flush=True)
-            return
         self.assertLessEqual(comparison.of_stream(),
                              (smallest ** 2 + LOST ** 2) ** 0.5 + ROUNDED)
         self.assertLessEqual(comparison.of_bones(), BY_BONES)
