@@ -9,6 +9,7 @@ bend, and in small ones that went wrong.
 import random
 
 from gltf_scene import Scene, cross, degrees, minus
+from normal_oracle import Decoded, Oracle
 from normal_scenes import FRAMES, MOTIONS, SHAPES, number_of, write_scene
 from tools_testing import ToolsTest, main
 
@@ -36,103 +37,103 @@ def by_number(scene, frame):
     return found
 
 
-def normals_of_obj(path):
-    """{number of a vertex: normal} of an OBJ file."""
-    uv, normals, found = [], [], {}
-    for line in path.read_text().splitlines():
-        words = line.split()
-        if words[:1] == ["vt"]:
-            uv.append([float(words[1]), 1 - float(words[2])])
-        elif words[:1] == ["vn"]:
-            normals.append([float(x) for x in words[1:4]])
-        elif words[:1] == ["f"]:
-            for word in words[1:]:
-                _, t, n = word.split("/")
-                found[number_of(uv[int(t) - 1])] = normals[int(n) - 1]
-    return found
+# The promises, in degrees.
+LOST = 0.5     # RMS, by which errors may exceed the smallest ones, to save bytes
+ROUNDED = 0.6  # largest error of stored vectors
+BY_BONES = 2.5  # RMS from the stream: 2 that targets may leave, and half a degree between keys
+COMPARED = range(0, FRAMES, 2)
 
 
 class Comparison:
-    """Angles between normals of the input and decoded ones, of vertices that can be seen."""
+    """Angles between normals of the input and decoded ones, of vertices that can be seen, in the
+    frames that the encoder compares."""
 
-    def __init__(self, path):
-        self.scene = Scene(path)
-        self.frames = {}
-        self.largest = {}
+    def __init__(self, test, name):
+        scene = Scene(test.path(name))
+        # Just after keys of steps, which are floats and may be later than the frame.
+        self.frames = [by_number(scene, scene.frame(f / 30 + 1e-6)) for f in COMPARED]
+        self.decoded = Decoded(number_of)
+        for f in COMPARED:
+            self.decoded.add(test.path(f"{f:04d}.obj"))
+        glb = Scene(test.path("a.glb"))
+        self.by_bones = [{n: normal for n, (normal, _) in by_number(glb, glb.frame(f / 30)).items()}
+                         for f in COMPARED]
+        largest = {}
+        for frame in self.frames:
+            for n, (_, size) in frame.items():
+                largest[n] = max(largest.get(n, 0.0), size)
+        self.numbers = [n for n, size in largest.items() if size > 0]
+        for frame in self.frames:  # what can hardly be seen does not count
+            for n in self.numbers:
+                normal, size = frame[n]
+                if size < 0.01 * largest[n] or not any(normal):
+                    frame[n] = (normal, 0.0)
+                else:
+                    frame[n] = (normal, size / largest[n])
+        self.numbers = [n for n in self.numbers if any(frame[n][1] for frame in self.frames)]
+        self.oracle = Oracle(self.frames, self.decoded)
 
-    def want(self, frames):
-        for f in frames:
-            self.frames[f] = by_number(self.scene, self.scene.frame(f / 30))
-            for number, (_, size) in self.frames[f].items():
-                self.largest[number] = max(self.largest.get(number, 0.0), size)
+    def rms(self, errors):
+        """errors: {number: degrees}, of the numbers that count."""
+        weights = {n: sum(frame[n][1] for frame in self.frames) for n in self.numbers}
+        return (sum(weights[n] * errors[n] ** 2 for n in self.numbers) /
+                sum(weights.values())) ** 0.5
 
-    def angles(self, f, decoded):
-        """Sorted. decoded: {number: normal}."""
-        found = []
-        for number, (normal, size) in self.frames[f].items():
-            if size < 0.04 * self.largest[number] or not any(normal):
-                continue
-            found.append(degrees(normal, decoded[number]))
-        return sorted(found)
+    def smallest(self):
+        return self.rms(self.oracle.errors(self.numbers))
+
+    def of_stream(self):
+        return self.rms({n: self.oracle.mean(n, [degrees(frame[n][0], decoded[n]) for frame, decoded
+                                                 in zip(self.frames, self.decoded.normals)])
+                         for n in self.numbers})
+
+    def of_bones(self):
+        """From the normals of the stream."""
+        return self.rms({n: self.oracle.mean(n, [degrees(bones[n], decoded[n]) for bones, decoded
+                                                 in zip(self.by_bones, self.decoded.normals)])
+                         for n in self.numbers})
 
 
 class NormalsTest(ToolsTest):
     def encode_scene(self, name, *options):
-        """What rlpcenc says."""
-        answer = self.ok("rlpcenc", self.path(name), "-o", self.path("a.rlpc"), "--preset", "fast",
-                         *options)
+        self.ok("rlpcenc", self.path(name), "-o", self.path("a.rlpc"), "--preset", "fast", *options)
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.glb"), "--quiet")
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("%04d.obj"), "--quiet")
-        return answer
 
-    def compare(self, name, frames):
-        """{frame: (angles of the .glb file, angles of OBJ files)}"""
-        comparison = Comparison(self.path(name))
-        comparison.want(range(0, FRAMES, 3))
-        comparison.want(frames)
-        decoded = Scene(self.path("a.glb"))
-        return {f: (comparison.angles(f, {number: normal for number, (normal, _) in
-                                          by_number(decoded, decoded.frame(f / 30)).items()}),
-                    comparison.angles(f, normals_of_obj(self.path(f"{f:04d}.obj"))))
-                for f in frames}
-
-    def check(self, name, frames, has_folds):
-        """Bounds, in degrees: on the mean, and on what most vertices are within."""
-        mean, most, part = (15, 60, 0.9) if has_folds else (4, 20, 0.98)
-        for f, kinds in self.compare(name, frames).items():
-            for kind, angles in zip(("glb", "obj"), kinds):
-                if not angles:
-                    continue
-                with self.subTest(frame=f, kind=kind):
-                    self.assertLess(sum(angles) / len(angles), mean)
-                    self.assertLess(angles[int(part * (len(angles) - 1))], most)
+    def check(self, name):
+        comparison = Comparison(self, name)
+        smallest = comparison.smallest()
+        self.assertLessEqual(comparison.of_stream(),
+                             (smallest ** 2 + LOST ** 2) ** 0.5 + ROUNDED)
+        self.assertLessEqual(comparison.of_bones(), BY_BONES)
 
 
 class Parts(NormalsTest):
-    """Each shape with each motion, between others that turn."""
-
-    def test_every_motion(self):
+    def test_every_shape_with_every_motion(self):
         for i, motion in enumerate(MOTIONS):
-            for j, shape in enumerate(SHAPES):
-                with self.subTest(motion=motion, shape=shape):
-                    chance = random.Random(100 * i + j)
-                    frames = write_scene(self.path("in.glb"), chance,
-                                         [("box", "turns"), (shape, motion)])
-                    self.encode_scene("in.glb")
-                    self.check("in.glb", frames, motion == "folds")
+            with self.subTest(motion=motion):
+                write_scene(self.path("in.glb"), random.Random(500 + i),
+                            [("box", "turns")] + [(shape, motion) for shape in SHAPES])
+                self.encode_scene("in.glb")
+                self.check("in.glb")
+
+    def test_the_fold_of_a_tube_whose_normals_follow_from_the_first_frame(self):
+        """A stored vector that is the predicted one would follow the surface, off by 47 degrees."""
+        write_scene(self.path("in.glb"), random.Random(502), [("box", "turns"), ("tube", "folds")])
+        self.encode_scene("in.glb")
+        self.check("in.glb")
 
 
 class RandomScenes(NormalsTest):
     def test_random_scenes(self):
-        for seed in range(6):
+        for seed in range(3):
             with self.subTest(seed=seed):
                 chance = random.Random(seed)
                 parts = [(chance.choice(list(SHAPES)), chance.choice(list(MOTIONS)))
-                         for _ in range(chance.randrange(2, 7))]
-                frames = write_scene(self.path("in.glb"), chance, parts)
+                         for _ in range(chance.randrange(2, 5))]
+                write_scene(self.path("in.glb"), chance, parts)
                 self.encode_scene("in.glb")
-                self.check("in.glb", frames + [chance.randrange(1, FRAMES - 1)],
-                           "folds" in dict(map(reversed, parts)))
+                self.check("in.glb")
 
 
 if __name__ == "__main__":

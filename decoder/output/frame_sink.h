@@ -70,6 +70,7 @@ struct SinkOptions {
   GltfMotion motion = GltfMotion::kAuto;
   std::uint32_t max_targets = kUsualMaxTargets;  // beside bones
   std::uint64_t max_skin_bytes = 1U << 30;       // memory for the frames of a skin, all at once
+  std::uint32_t threads = 1;                     // that make a skin
   // Of `triangles`, as the decoder gives them; OBJ and PLY files hold some of them.
   std::vector<AttributeSet> attributes{};
   std::string asset{};  // materials and textures, a GLB (7.16); not of PLY files

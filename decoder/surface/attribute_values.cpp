@@ -127,6 +127,7 @@ FrameNormals::FrameNormals(const AttributeSet& set, std::span<const Triangle> tr
   if (!set.first_positions.empty()) {
     keep_first();
     find_followers();
+    find_turning_vertices();
     if (std::find(follows_.begin(), follows_.end(), 1) == follows_.end()) return;
   }
   faces_.resize(triangles.size());
@@ -134,7 +135,12 @@ FrameNormals::FrameNormals(const AttributeSet& set, std::span<const Triangle> tr
 }
 
 void FrameNormals::find_terms() {
-  if (set_.header.weight == SmoothingWeight::kAngle) return;
+  if (set_.header.weight == SmoothingWeight::kAngle) {
+    for (std::uint32_t c = 0; c < 3 * triangles_.size(); ++c) {
+      if (follows(of_corner(c))) angles_.push_back(c);
+    }
+    return;
+  }
   terms_.reserve(3 * triangles_.size());
   for (std::size_t c = 0; c < 3 * triangles_.size(); ++c) {
     const std::uint32_t normal = of_corner(c);
@@ -149,6 +155,7 @@ template <class Coordinate>
 void FrameNormals::add_up(std::span<const Coordinate> xyz) {
   std::fill(faces_.begin(), faces_.end(), Vec3{});
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    if (!has_wanted_.empty() && has_wanted_[t] == 0) continue;
     const Triangle& v = triangles_[t];
     const Vec3 n = cross(difference(xyz, v[0], v[1]), difference(xyz, v[0], v[2]));
     Vec3& face = faces_[set_.face_of_triangle[t]];
@@ -164,9 +171,7 @@ void FrameNormals::add_up(std::span<const Coordinate> xyz) {
                               : std::sqrt(dot(faces_[f], faces_[f]));
     if (length > 0.0) add(normal, faces_[f], 1.0 / length);
   }
-  if (set_.header.weight != SmoothingWeight::kAngle) return;
-  for (std::size_t c = 0; c < 3 * triangles_.size(); ++c) {
-    if (!follows(of_corner(c))) continue;
+  for (const std::uint32_t c : angles_) {
     const Vec3& face = faces_[set_.face_of_triangle[c / 3]];
     const Triangle& t = triangles_[c / 3];
     const Vec3 a = difference(xyz, t[c % 3], t[(c + 1) % 3]);
@@ -217,13 +222,44 @@ void FrameNormals::find_followers() {
   }
 }
 
+void FrameNormals::find_turning_vertices() {
+  turning_vertices_.clear();
+  for (std::uint32_t v = 0; v < corners_.size(); ++v) {
+    const std::span<const std::uint32_t> corners = corners_[v];
+    const bool turns = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t c) {
+      return !follows(of_corner(c)) && is_wanted(of_corner(c));
+    });
+    if (turns) turning_vertices_.push_back(v);
+  }
+}
+
+void FrameNormals::restrict_to(Vector<std::uint8_t> wanted) {
+  wanted_ = std::move(wanted);
+  find_turning_vertices();
+  if (faces_.empty()) return;
+  terms_.erase(std::remove_if(terms_.begin(), terms_.end(),
+                              [&](const auto& term) { return !is_wanted(term[0]); }),
+               terms_.end());
+  angles_.erase(std::remove_if(angles_.begin(), angles_.end(),
+                               [&](std::uint32_t c) { return !is_wanted(of_corner(c)); }),
+                angles_.end());
+  Vector<std::uint8_t> of_face(faces_.size());
+  for (std::size_t c = 0; c < 3 * triangles_.size(); ++c) {
+    const bool is_used = follows(of_corner(c)) && is_wanted(of_corner(c));
+    if (is_used) of_face[set_.face_of_triangle[c / 3]] = 1;
+  }
+  has_wanted_.resize(triangles_.size());
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    has_wanted_[t] = of_face[set_.face_of_triangle[t]];
+  }
+}
+
 template <class Coordinate>
 void FrameNormals::turn_first(std::span<const Coordinate> xyz) {
   const std::span<const std::int32_t> first = set_.first_positions;
   const auto is_turned = [&](std::uint32_t c) { return !follows(of_corner(c)); };
-  for (std::size_t v = 0; v < corners_.size(); ++v) {
+  for (const std::uint32_t v : turning_vertices_) {
     const std::span<const std::uint32_t> corners = corners_[v];
-    if (std::none_of(corners.begin(), corners.end(), is_turned)) continue;
     LocalTurn turn;
     add_surroundings(triangles_, corners, first, xyz, turn);
     turn.find();
@@ -255,6 +291,7 @@ std::span<const double> FrameNormals::sums(std::span<const std::int32_t> positio
 void FrameNormals::compute(std::span<const float> xyz, std::span<float> normals) {
   sums(xyz);
   for (std::size_t i = 0; i < sums_.size(); i += 3) {
+    if (!is_wanted(static_cast<std::uint32_t>(i / 3))) continue;
     const Vec3 n = unit_normal(&sums_[i]);
     for (std::size_t c = 0; c < 3; ++c) normals[i + c] = static_cast<float>(n[c]);
   }

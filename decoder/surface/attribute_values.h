@@ -43,8 +43,12 @@ class FrameNormals {
   // (F.8.5); without positions, they are given as they are.
   std::span<const double> sums(std::span<const float> xyz);
   std::span<const double> sums(std::span<const std::int32_t> positions);
-  // The same, of length 1; (0, 0, 1) where there is none. normals: [count()][3].
+  // The same, of length 1; (0, 0, 1) where there is none. normals: [count()][3]; those that
+  // restrict_to() leaves out stay as they are.
   void compute(std::span<const float> xyz, std::span<float> normals);
+  // Leaves out all other normals from now on, which saves their time. wanted: [count()]; may be
+  // called once.
+  void restrict_to(Vector<std::uint8_t> wanted);
 
  private:
   template <class Coordinate>
@@ -52,8 +56,10 @@ class FrameNormals {
   void find_terms();
   void keep_first();
   void find_followers();
+  void find_turning_vertices();
   // Whether a normal is computed from the positions of the frame.
   bool follows(std::uint32_t normal) const { return follows_.empty() || follows_[normal] != 0; }
+  bool is_wanted(std::uint32_t normal) const { return wanted_.empty() || wanted_[normal] != 0; }
   template <class Coordinate>
   void turn_first(std::span<const Coordinate> xyz);
   template <class Coordinate>
@@ -64,13 +70,17 @@ class FrameNormals {
   std::uint32_t count_ = 0;
   // Each face once at each of its normals, unless angles are the weights.
   Vector<std::array<std::uint32_t, 2>> terms_;  // normal, face
+  Vector<std::uint32_t> angles_;                // the corners whose angles are weights
   Vector<std::array<double, 3>> faces_;
   Vector<double> sums_;
+  Vector<std::uint8_t> wanted_;      // [normal]; empty: all
+  Vector<std::uint8_t> has_wanted_;  // [triangle], its face has such a normal; empty: all
   // Unit vectors of the first frame, which of them follow the surface, and the corners around
   // which the others turn.
   Vector<float> first_;
   Vector<std::uint8_t> follows_;
-  ListOfLists<std::uint32_t> corners_;  // of each vertex
+  ListOfLists<std::uint32_t> corners_;      // of each vertex
+  Vector<std::uint32_t> turning_vertices_;  // those with a wanted normal that turns
 };
 
 }  // namespace rlpc

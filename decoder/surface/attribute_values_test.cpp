@@ -134,6 +134,29 @@ TEST(FrameNormals, UnitVectorsWithoutResidualFollowTheSurface) {
   EXPECT_GT(normal_at(normals, bent, 1)[0], 0.9F);  // this one turns
 }
 
+TEST(FrameNormals, LeavesOutThoseThatAreNotWanted) {
+  AttributeSet set = unit_vectors({511, 511, 1022, 511, 511, 511, 511, 900});
+  std::vector<float> bent(kFlat.begin(), kFlat.end());
+  bent[3 * 3 + 2] = 100.0F;
+  for (const auto weight :
+       {SmoothingWeight::kArea, SmoothingWeight::kEqual, SmoothingWeight::kAngle}) {
+    set.header.weight = weight;
+    FrameNormals whole(set, kSquare, 4);
+    for (std::size_t wanted = 0; wanted < 4; ++wanted) {
+      FrameNormals some = whole;
+      Vector<std::uint8_t> one(4);
+      one[wanted] = 1;
+      some.restrict_to(std::move(one));
+      std::vector<float> normals(12, 7.0F);
+      some.compute(bent, normals);
+      const auto expected = normal_at(whole, bent, wanted);
+      for (std::size_t i = 0; i < normals.size(); ++i) {
+        EXPECT_EQ(normals[i], i / 3 == wanted ? expected[i % 3] : 7.0F) << wanted << " " << i;
+      }
+    }
+  }
+}
+
 TEST(FrameNormals, SmoothingFollowsFromPositions) {
   AttributeSet set = unit_vectors({});
   set.header.kind = ValueKind::kSmoothing;

@@ -270,6 +270,7 @@ int decode(const Options& o) {
     options.motion = o.motion;
     options.max_targets = o.max_targets;
     options.max_skin_bytes = o.decoder.limits.max_memory_bytes / 2;
+    options.threads = o.decoder.threads;
     attributes_code = read_attributes(o, *decoder, live, options);
     options.limit = o.limit;
     auto opened = rlpc::open_frame_sink(o.output, std::move(options));

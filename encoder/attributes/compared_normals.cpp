@@ -108,6 +108,24 @@ Vec3d ComparedNormals::fitted(std::uint32_t x) const {
   return normalised(sum);
 }
 
+std::optional<Vec3d> ComparedNormals::best_vector(std::uint32_t x) const {
+  std::optional<Vec3d> best;
+  double best_error = 0.0;
+  const auto attempt = [&](const Vec3d& vector) {
+    if (is_zero(vector)) return;
+    const double error = vector_error(x, vector);
+    if (best && error >= best_error) return;
+    best = vector;
+    best_error = error;
+  };
+  if (weight(x) == 0.0) return best;
+  attempt(fitted(x));
+  for (const Frame& frame : frames_) {
+    if (frame.weights[x] > 0.0F) attempt(frame.turned[x]);
+  }
+  return best;
+}
+
 double ComparedNormals::weight(std::uint32_t x) const {
   double sum = 0.0;
   for (const Frame& frame : frames_) sum += frame.weights[x];

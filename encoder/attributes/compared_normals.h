@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,10 @@ class ComparedNormals {
   // The unit vector of a sector that, in the first frame, comes nearest to the input in all
   // frames; zero: there is none.
   Vec3d fitted(std::uint32_t x) const;
+  // The unit vector of the first frame with the smallest vector_error(), out of those that are
+  // right in one frame and the one nearest to all in squares. None: the sector is never seen.
+  // Where the surface turns otherwise than the normal in some frames, the others count.
+  std::optional<Vec3d> best_vector(std::uint32_t x) const;
   // Means over the frames, in degrees: of smoothing; of a unit vector of the first frame.
   double smoothing_error(std::uint32_t x) const;
   double vector_error(std::uint32_t x, const Vec3d& stored) const;

@@ -43,6 +43,8 @@ class AttributeEncoder {
     std::vector<bool> seams;
     Sectors sectors;
     std::vector<std::uint32_t> value_of_sector;  // index of the value, or kNoSector
+    // [sector], whether its value must not be the predicted one (NormalPlan); empty: none.
+    std::vector<bool> must_turn;
   };
 
   CodedAttributeSet code(const SourceAttribute& source, AttributeReport& report);
@@ -114,7 +116,8 @@ AttributeEncoder::Draft AttributeEncoder::make_draft(const SourceAttribute& sour
               .value_of_corner = {},
               .seams = {},
               .sectors = {},
-              .value_of_sector = {}};
+              .value_of_sector = {},
+              .must_turn = {}};
   draft.value_of_corner.resize(corner_map_.size());
   const auto triangles = geometry_.triangles();
   for (std::uint32_t c = 0; c < corner_map_.size(); ++c) {
@@ -212,6 +215,11 @@ CodedAttributeSet AttributeEncoder::code_with(const Draft& draft,
     const std::uint32_t i = draft.value_of_sector[x];
     for (std::size_t c = 0; c < n && i != kNoSector; ++c) {
       value[c] = draft.quantised.values[std::size_t{i} * n + c];
+    }
+    if (!draft.must_turn.empty() && draft.must_turn[x] && value == expected) {
+      value[0] += value[0] > 0 ? -1 : 1;  // the next point
+    }
+    for (std::size_t c = 0; c < n && i != kNoSector; ++c) {
       set.residuals[std::size_t{x} * n + c] =
           static_cast<std::uint32_t>(value[c] - expected[c]);
     }
@@ -305,6 +313,7 @@ CodedAttributeSet AttributeEncoder::code_normals(Draft draft, AttributeReport& r
     draft.value_of_sector[x] = settings_.from_positions && plan.follows[x] ? kNoSector : x;
   }
   if (!settings_.from_positions) return best_of(draft, kWithoutPositions);
+  draft.must_turn = std::move(plan.must_turn);
   draft.quantised.header = set.header;
   const Faces faces(geometry_, set.header.diagonals, edge_mates_, set.seams, set.diagonal_flags,
                     true);

@@ -19,14 +19,10 @@ constexpr std::uint32_t kSmoothingBits = 10;  // fixed: what smoothing is fitted
 // fixed: degrees by which a normal that follows from positions may be worse than a stored
 // one; at a KG error of 0.1 %, normals of triangles are off by as much (README).
 constexpr double kServes = 1.0;
-// tuned (off: 1): A normal is stored rather than computed where its error in decoded frames is
-// below that of the surface by this factor. Set on three models; 0.5 saves a quarter of the
-// bytes of their normals.
-constexpr double kClearly = 0.8;
-// fixed: cosine of the angle by which a fitted vector may miss the normal of the first frame
-constexpr double kNearFirst = 0.94;
-constexpr double kBetter = 0.25;  // fixed: degrees, of a single normal
-// fixed: degrees; where few normals are stored, those that gain more than this
+// fixed: half of that; by how much (RMS) normals may be worse than the best way to code them.
+// Those that are not stored save a sixth to a half of the bytes of normals.
+constexpr double kLost = kServes / 2;
+// fixed: degrees; single normals that gain more than this are stored in any case
 constexpr double kMuchBetter = 10.0;
 // fixed: RMS degrees up to which smoothing takes the place of unit vectors that would keep
 // their direction whatever the surface does
@@ -137,6 +133,9 @@ class NormalPlanner {
         if (!compared.can_turn(x)) plan.follows[x] = true;
       }
     }
+    for (std::uint32_t x = 0; x < count(); ++x) {
+      plan.must_turn.push_back(!plan.follows[x] && smooth_[x] - vector_[x] > kServes);
+    }
     plan.is_smoothing = std::ranges::all_of(plan.follows, [](bool x) { return x; }) &&
                         settings_.normals != NormalChoice::kExact && !settings_.exact;
     if (settings_.normals == NormalChoice::kSmoothing) plan.is_smoothing = true;
@@ -154,17 +153,8 @@ class NormalPlanner {
   Vec3d vector_of(const ComparedNormals& compared, const Vec3d& in_first,
                   std::uint32_t x) const {
     if (is_exact_ && compared.is_in_first(x)) return in_first;
-    const Vec3d fitted = compared.fitted(x);
-    if (is_zero(fitted)) {
-      if (!is_zero(in_first)) return in_first;
-    } else {
-      // Where the surface turns otherwise than the normal in some frames, the others are right.
-      const bool is_first_better =
-          compared.is_in_first(x) &&
-          (dot(fitted, in_first) < kNearFirst ||
-           compared.vector_error(x, in_first) <= compared.vector_error(x, fitted));
-      return is_first_better ? in_first : fitted;
-    }
+    if (const auto best = compared.best_vector(x)) return *best;
+    if (!is_zero(in_first)) return in_first;
     return is_zero(at_rest_[x]) ? Vec3d{0.0, 0.0, 1.0} : at_rest_[x];
   }
 
@@ -176,13 +166,27 @@ class NormalPlanner {
     return total;
   }
 
-  // All normals but those for which a stored one is better by more than that, and clearly:
-  // where both are far off, as along folds, the surface at least is lit as its neighbourhood.
-  std::vector<bool> all_but(double better) const {
-    std::vector<bool> follows(count());
+  // Stores the normals that gain most, until all others together lose no more than kLost, and
+  // those that gain much each.
+  std::vector<bool> follow_where_it_serves(const ComparedNormals& compared) const {
+    std::vector<bool> follows(count(), true);
+    std::vector<std::pair<double, std::uint32_t>> gains;  // of squares
+    double weights = 0.0;
+    double lost = 0.0;
     for (std::uint32_t x = 0; x < count(); ++x) {
-      const bool is_clear = vector_[x] <= kClearly * smooth_[x];
-      follows[x] = smooth_[x] - vector_[x] <= better || !is_clear;
+      const double weight = compared.weight(x);
+      weights += weight;
+      const double gain = weight * (smooth_[x] * smooth_[x] - vector_[x] * vector_[x]);
+      if (!(gain > 0.0)) continue;
+      gains.emplace_back(-gain, x);
+      lost += gain;
+    }
+    std::ranges::sort(gains);
+    for (const auto& [minus_gain, x] : gains) {
+      const bool is_enough = lost <= kLost * kLost * weights;
+      if (is_enough && smooth_[x] - vector_[x] <= kMuchBetter) continue;
+      follows[x] = false;
+      lost += minus_gain;
     }
     return follows;
   }
@@ -199,17 +203,14 @@ class NormalPlanner {
       return smooth <= std::max(kServes, still) ? all : none;
     }
     if (is_exact_) {
-      std::vector<bool> follows = all_but(0.0);  // of those that are not in the first frame
+      std::vector<bool> follows(count());  // of those that are not in the first frame
       for (std::uint32_t x = 0; x < count(); ++x) {
-        if (compared.is_in_first(x) || compared.weight(x) == 0.0) follows[x] = false;
+        const bool must_be_exact = compared.is_in_first(x) || compared.weight(x) == 0.0;
+        follows[x] = !must_be_exact && smooth_[x] <= vector_[x];
       }
       return follows;
     }
-    std::vector<bool> some = all_but(kBetter);
-    const double before = total(compared, all).rms();
-    const double after = total(compared, some).rms();
-    const bool is_worth_it = before * before - after * after > kServes * kServes;
-    return is_worth_it ? some : all_but(kMuchBetter);
+    return follow_where_it_serves(compared);
   }
 
   const NormalTask& task_;

@@ -37,6 +37,9 @@ struct NormalPlan {
   bool is_smoothing = false;  // no normals are stored
   // [sector], whether its normal follows from positions.
   std::vector<bool> follows;
+  // [sector], whether its normal must not follow from positions, which would be clearly worse.
+  // A point that is the predicted one would follow (F.8.5).
+  std::vector<bool> must_turn;
   // [sector], points of the octahedron; of those that follow, without meaning.
   std::vector<std::array<std::uint32_t, 2>> points;
   std::vector<NormalError> errors;  // of the first frame and of later_frames

@@ -83,8 +83,9 @@ ROOMS = {
     # Writers of mesh files know nothing of coding.
     "decoder/output": {"common", "common/attributes", "common/io", "common/json", "common/mesh",
                        "decoder/surface"},
+    # A skin is made from all frames at once, on several threads.
     "decoder/output/gltf": {"common", "common/attributes", "common/io", "common/json",
-                            "common/mesh",
+                            "common/mesh", "common/parallel",
                             "decoder/output", "decoder/surface"},
     # The decoder for JavaScript.
     "decoder/js/wasm": {"common", "common/attributes", "common/bitstream", "common/io",

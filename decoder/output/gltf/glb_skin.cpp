@@ -224,14 +224,17 @@ GlbSkin add_skin(GlbDocument& document, const GltfLook& look, SkinSource& source
       bytes_without_targets(look, motion, rest, influences, spans, frame_rate),
       3 * static_cast<double>(look.mesh().vertex.size()) / static_cast<double>(rest.size()),
       skin.stream_rms};
-  targets.places = principal_shapes(missing_moves(influences, maps, rest, source.frames),
-                                    tolerated_rms, limits.max_targets, price);
+  Eigen::MatrixXf missing = missing_moves(influences, maps, rest, source.frames);
+  NormalVertices vertices;
+  if (look.has_normals()) vertices = normal_vertices(look.mesh(), influences, rest, missing);
+  targets.places =
+      principal_shapes(std::move(missing), tolerated_rms, limits.max_targets, price);
   // None, but of all frames.
   targets.normals.weights.resize(0, static_cast<Eigen::Index>(source.frames.size()));
   SkinNormals normals;
   if (look.has_normals()) {
-    normals = skin_normals(look, influences, maps, rest, source.frames,
-                           limits.max_targets - targets.count(), limits.max_normal_bytes);
+    normals = skin_normals(look, influences, maps, rest, source.frames, vertices,
+                           {limits.max_targets - targets.count(), limits.max_normal_bytes});
     targets.normals = std::move(normals.moves);
     skin.lacks_normals = normals.lacks_moves;
   }

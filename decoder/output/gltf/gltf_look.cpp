@@ -127,8 +127,13 @@ void GltfLook::add_images(GltfJson& images, GlbBuffers& buffers) const {
 }
 
 std::vector<float> GltfLook::normals(std::span<const float> xyz) const {
-  std::vector<float> all(3 * std::size_t{drawn_->normals().count()});
-  drawn_->normals().compute(xyz, all);
+  return normals(drawn_->normals(), xyz);
+}
+
+std::vector<float> GltfLook::normals(FrameNormals& of_frames,
+                                     std::span<const float> xyz) const {
+  std::vector<float> all(3 * std::size_t{of_frames.count()});
+  of_frames.compute(xyz, all);
   std::vector<float> normals;
   normals.reserve(3 * drawn_->normal_of_vertex().size());
   for (const std::uint32_t i : drawn_->normal_of_vertex()) {

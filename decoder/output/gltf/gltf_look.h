@@ -30,6 +30,12 @@ class GltfLook {
   bool has_normals() const { return drawn_->has_normals(); }
   // Of output vertices, if has_normals(). xyz: of the vertices of the stream.
   std::vector<float> normals(std::span<const float> xyz) const;
+  // The same on a thread of its own. of_frames: a copy of frame_normals(); where it is
+  // restricted, the others are undefined.
+  std::vector<float> normals(FrameNormals& of_frames, std::span<const float> xyz) const;
+  const FrameNormals& frame_normals() const { return drawn_->normals(); }
+  // Index of the normal of each output vertex, among frame_normals().
+  std::span<const std::uint32_t> normal_of_vertex() const { return drawn_->normal_of_vertex(); }
   // Sets materials, textures and what they need.
   void add_materials(GltfJson& root, GlbBuffers& buffers) const;
   // Why the asset was left out; empty: it was not.

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "common/parallel/for_each.h"
 #include "decoder/output/gltf/glb_skin.h"
 #include "decoder/output/gltf/gltf_sink.h"
 
@@ -104,6 +105,7 @@ class GltfSkinSink final : public GltfSink {
       if (is_required) return OutputError{name() + ": --as skin: " + why, true};
       return finish_as_morph();
     }
+    const Threads threads(options().threads);
     poses_.take(source_);
     GlbDocument document(options().frame_rate);
     const GlbSkin skin =

@@ -28,9 +28,26 @@ struct SkinNormals {
   bool lacks_moves = false;  // as they need more than max_bytes
 };
 
+// Which vertices of the stream have normals that joints alone may not turn as the surface does.
+struct NormalVertices {
+  std::vector<bool> is_moving;  // normals may move beside the joints
+  std::vector<bool> is_bent;  // several joints move the triangles around it; then it moves, too
+};
+
+// missing: missing_moves(). Time: in proportion to triangles times frames, far less than
+// normals take.
+NormalVertices normal_vertices(const GlbMesh& mesh, const SkinInfluences& influences,
+                               std::span<const float> rest, const Eigen::MatrixXf& missing);
+
+struct NormalLimits {
+  std::size_t max_targets = 0;
+  std::uint64_t max_bytes = 0;  // for the moves of all frames
+};
+
 // look: with normals. maps: [frame].
 SkinNormals skin_normals(const GltfLook& look, const SkinInfluences& influences,
                          std::span<const JointMaps> maps, std::span<const float> rest,
-                         ShownFrames frames, std::size_t max_targets, std::uint64_t max_bytes);
+                         ShownFrames frames, const NormalVertices& vertices,
+                         const NormalLimits& limits);
 
 }  // namespace rlpc

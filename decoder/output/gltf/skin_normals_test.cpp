@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <random>
 
 #include "decoder/output/gltf/bending_test.h"
 
@@ -91,7 +92,10 @@ struct Skinned {
   std::vector<float> rest = best_rest(influences, maps, b.frames);  // as yet
 
   SkinNormals normals(std::size_t max_targets, std::uint64_t max_bytes = 1U << 20) const {
-    return skin_normals(look, influences, maps, rest, b.frames, max_targets, max_bytes);
+    const NormalVertices vertices = normal_vertices(
+        look.mesh(), influences, rest, missing_moves(influences, maps, rest, b.frames));
+    return skin_normals(look, influences, maps, rest, b.frames, vertices,
+                        {max_targets, max_bytes});
   }
   // RMS of the angle to those of a frame.
   double error(const SkinNormals& normals, std::size_t f) const {
@@ -131,6 +135,80 @@ TEST(SkinNormals, MoveWithWhatBonesLeave) {
   EXPECT_GT(skinned.error(none, kFrames - 1), 5);
   EXPECT_LT(skinned.error(normals, kFrames - 1), skinned.error(none, kFrames - 1) / 3);
   EXPECT_TRUE(skinned.normals(20, 1000).lacks_moves);
+}
+
+// A sheet that one joint turns, and noise on its positions.
+struct Noisy {
+  static constexpr std::uint32_t kRow = 12;
+  Skeleton skeleton;
+  std::vector<Triangle> triangles;
+  std::vector<float> rest;
+  std::vector<JointMaps> maps;
+  std::vector<std::vector<float>> frames;
+
+  explicit Noisy(double noise) {
+    constexpr std::int64_t kOne = std::int64_t{1} << 30;
+    skeleton.bones = {{-1, {{{{kOne, 0, 0}, {0, kOne, 0}, {0, 0, kOne}}}, {0, 0, 0}}}};
+    std::mt19937 random(1);
+    const auto any = [&] { return static_cast<double>(random()) / 4294967296.0 - 0.5; };
+    for (std::uint32_t v = 0; v < kRow * kRow; ++v) {
+      skeleton.influences.push_back({{0, 16}});
+      const double x = v % kRow + 0.5 * any();
+      const double y = v / kRow + 0.5 * any();
+      for (const double c : {x, y, std::sin(x) + 0.3 * any()}) {
+        rest.push_back(static_cast<float>(c));
+      }
+      if (v % kRow + 1 == kRow || v / kRow + 1 == kRow) continue;
+      triangles.push_back({v, v + 1, v + kRow});
+      triangles.push_back({v + 1, v + kRow + 1, v + kRow});
+    }
+    for (std::size_t f = 0; f < 12; ++f) {
+      JointMap& map = maps.emplace_back(1)[0];
+      map.leftCols<3>() = Bending::turn(0.5 * static_cast<double>(f)).toRotationMatrix();
+      map.col(3) = Eigen::Vector3d(1, 2, 3);
+      std::vector<float>& xyz = frames.emplace_back();
+      for (std::size_t v = 0; v < rest.size() / 3; ++v) {
+        const double strength = noise * static_cast<double>(v % kRow) / kRow;
+        const Eigen::Vector3d p(rest[3 * v] + strength * any(),
+                                rest[3 * v + 1] + strength * any(),
+                                rest[3 * v + 2] + strength * any());
+        for (const double x : map* p.homogeneous()) xyz.push_back(static_cast<float>(x));
+      }
+    }
+  }
+};
+
+// A vertex that is called steady has, in each frame, the normal that the joint turns there.
+TEST(NormalVertices, AreSteadyWhereNormalsTurnWithTheirJoint) {
+  const Noisy noisy(0.02);
+  std::vector<AttributeSet> sets(1);
+  sets[0].header.name = "normal";
+  sets[0].header.kind = ValueKind::kSmoothing;
+  sets[0].header.num_components = 0;
+  sets[0].face_of_triangle.resize(noisy.triangles.size());
+  std::iota(sets[0].face_of_triangle.begin(), sets[0].face_of_triangle.end(), 0U);
+  const GltfLook look(sets, noisy.triangles, Noisy::kRow * Noisy::kRow, "");
+  const SkinInfluences influences = written_influences(noisy.skeleton, kByteWhole);
+  const NormalVertices vertices =
+      normal_vertices(look.mesh(), influences, noisy.rest,
+                      missing_moves(influences, noisy.maps, noisy.rest, noisy.frames));
+  std::size_t num_steady = 0;
+  for (std::size_t f = 0; f < noisy.frames.size(); ++f) {
+    const std::vector<float> at_rest = look.normals(noisy.rest);
+    const std::vector<float> normals = look.normals(noisy.frames[f]);
+    const auto& vertex = look.mesh().vertex;
+    for (std::size_t i = 0; i < vertex.size(); ++i) {
+      if (vertices.is_moving[vertex[i]]) continue;
+      ++num_steady;
+      const std::vector<float> by_joint = turned(influences, noisy.maps[f], {&vertex[i], 1},
+                                                 std::span(at_rest).subspan(3 * i, 3));
+      EXPECT_LT(rms_angle(std::span(normals).subspan(3 * i, 3), by_joint), 1.0)
+          << f << " " << i;
+    }
+  }
+  EXPECT_GT(num_steady, 12 * 24);
+  EXPECT_LT(num_steady, 12 * 120);
+  for (std::size_t v = 0; v < vertices.is_bent.size(); ++v) EXPECT_FALSE(vertices.is_bent[v]);
 }
 
 }  // namespace

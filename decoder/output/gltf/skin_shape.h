@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,9 @@ SkinInfluences written_influences(const Skeleton& skeleton, int whole);
 // to another.
 double rms_between(const SkinInfluences& a, const SkinInfluences& b, const JointMaps& maps,
                    std::span<const float> xyz);
+
+// The joint that moves a vertex alone, if there is one.
+std::optional<std::size_t> only_joint(const SkinInfluences& influences, std::size_t vertex);
 
 // How the joints map a vertex in a frame.
 JointMap map_of(const SkinInfluences& influences, std::size_t vertex, const JointMaps& maps);
