@@ -116,14 +116,14 @@ TEST(StreamVerifier, DecodesFramesWhoseOriginalsAreGone) {
   const Written written = write_lossless(tube, false);
   StreamVerifier verifier(written.settings, written.report.header, written.report.input_vertex,
                           buffer_of(written.bytes), 1);
-  std::vector<float> original(3 * std::size_t{tube.num_vertices()});
+  std::vector<double> original(3 * std::size_t{tube.num_vertices()});
   std::vector<std::int32_t> positions(original.size());
-  const auto per_step = static_cast<float>(1 << -written.report.header.grid.log2_step);
+  const double per_step = static_cast<double>(1 << -written.report.header.grid.log2_step);
   for (std::uint32_t f = 0; f < tube.num_frames(); ++f) {
-    tube.read_frame(f, original);
+    tube.read_exact(f, original);
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const std::size_t from = 3 * std::size_t{written.report.input_vertex[i / 3]} + i % 3;
-      positions[i] = static_cast<std::int32_t>(std::floor(original[from] * per_step + 0.5F)) -
+      positions[i] = static_cast<std::int32_t>(std::floor(original[from] * per_step + 0.5)) -
                      written.report.header.grid.origin[i % 3];
     }
     if (f == 5) positions[7] += 2;
@@ -142,7 +142,7 @@ TEST(StreamVerifier, NoticesPositionsThatDecodersDoNotFind) {
   written.settings.target = {Target::kKg, 0.1};
   StreamVerifier verifier(written.settings, written.report.header, written.report.input_vertex,
                           buffer_of(written.bytes), 1);
-  const std::vector<float> original(3 * std::size_t{tube.num_vertices()});
+  const std::vector<double> original(3 * std::size_t{tube.num_vertices()});
   EXPECT_FALSE(verifier.expect(std::vector<std::int32_t>(original.size()), original));
   const auto error = verifier.check_expected();
   ASSERT_TRUE(error);
