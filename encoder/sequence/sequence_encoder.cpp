@@ -38,6 +38,22 @@ std::uint32_t spans_together(const SequenceHeader& header, std::uint32_t longest
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, num_threads));
 }
 
+// When a search that another profile contains may end before it has reached the target.
+enum class GivingUp { kNever, kAfterEncoding, kAfterSample };
+
+// Searches that take a second or two first encode all GOFs: the sample, whose clusters are not
+// searched, can take several times what the search finds. Those that take some tenths of a
+// second are never given up: where streams have few bytes, sizes and errors jump from one step
+// to the next.
+GivingUp giving_up(const SequenceHeader& header) {
+  // Vertices of all frames.
+  constexpr std::uint64_t kSmall = std::uint64_t{1} << 15;   // fixed: time
+  constexpr std::uint64_t kMedium = std::uint64_t{1} << 18;  // fixed: time
+  const std::uint64_t count = std::uint64_t{header.num_vertices} * header.num_frames;
+  if (count <= kSmall) return GivingUp::kNever;
+  return count <= kMedium ? GivingUp::kAfterEncoding : GivingUp::kAfterSample;
+}
+
 // The decoded frames that attributes refer to.
 std::vector<DecodedFrame> kept_frames(const BatchTrial& trial) {
   std::vector<DecodedFrame> frames;
@@ -187,14 +203,6 @@ TargetTask SequenceEncoder::task(const EncoderSettings& settings) const {
           .rms_spread = extent_.rms_spread,
           .fixed_bits = fixed_bits(),
           .progress = [this](std::uint32_t trial, double done) { show_progress(trial, done); }};
-}
-
-// Whether searches take some tenths of a second. They are then never given up: where streams
-// have few bytes, sizes and errors jump from one step to the next.
-bool SequenceEncoder::is_small() const {
-  constexpr std::uint64_t kSmall = std::uint64_t{1} << 15;  // fixed: time; vertices of frames
-  const SequenceHeader& header = coding_->header();
-  return std::uint64_t{header.num_vertices} * header.num_frames <= kSmall;
 }
 
 // Whether the search has no prospect, from a first encoding of a sample of the spans with the
@@ -393,8 +401,9 @@ std::uint64_t SequenceEncoder::bytes_of(const TargetResult& result) const {
 InputResult<TargetResult> SequenceEncoder::find(const Rival* rival) {
   if (auto error = prepare()) return *error;
   const ThreadPool::Use use(*threads_);
-  if (is_small()) rival = nullptr;
-  if (rival != nullptr) {
+  const GivingUp end = giving_up(coding_->header());
+  if (end == GivingUp::kNever) rival = nullptr;
+  if (rival != nullptr && end == GivingUp::kAfterSample) {
     const auto gives_up = is_hopeless(*rival);
     if (!gives_up) return gives_up.error();
     TargetResult none;

@@ -224,10 +224,13 @@ SkinnedTrial BoneSearch::try_requested(const SkinnedTrials& trials) {
 }
 
 // Bones that may be worth their bits, the most likely first: if they are expected to cost less
-// than a single bone, and not more than estimates are wrong by above the least.
+// than a single bone, and not more than estimates are wrong by above the least. In small GOFs,
+// of which a draft takes a tenth of a second, those that are not likely follow, one for each
+// number of influences: estimates of few vertices tell little.
 std::vector<BoneSearch::Candidate> BoneSearch::candidates(double step) {
   // tuned: Candidates are encoded as drafts, at most this many.
   constexpr std::size_t kDrafts = 3;
+  constexpr std::uint64_t kSmall = std::uint64_t{1} << 16;  // fixed: time; positions
   std::vector<Candidate> list;
   for (std::size_t g = 0; g < growths_.size(); ++g) {
     for (std::size_t i = 1; i < growths_[g].bones.size(); ++i) {
@@ -238,13 +241,19 @@ std::vector<BoneSearch::Candidate> BoneSearch::candidates(double step) {
     return a.expected < b.expected;
   });
   if (context_.settings.preset == Preset::kSlow) return list;
-  const auto is_unlikely = [&](const Candidate& c) {
-    return c.expected >=
-           std::min(worth_trying(step), (1.0 + kTryMargin) * list.front().expected);
-  };
-  list.erase(std::find_if(list.begin(), list.end(), is_unlikely), list.end());
-  if (list.size() > kDrafts) list.erase(list.begin() + kDrafts, list.end());
-  return list;
+  const bool is_small = std::uint64_t{frames_.num_vertices} * frames_.num_frames <= kSmall;
+  std::vector<Candidate> kept;
+  std::vector<bool> has_growth(growths_.size(), !is_small);
+  for (const Candidate& c : list) {
+    const bool is_likely =
+        kept.size() < kDrafts &&
+        c.expected < std::min(worth_trying(step), (1.0 + kTryMargin) * list.front().expected);
+    if (is_likely || !has_growth[c.growth]) {
+      kept.push_back({c.growth, c.bones, c.expected, is_likely});
+    }
+    has_growth[c.growth] = true;
+  }
+  return kept;
 }
 
 // Exchanges more of the bones of a candidate; none if they were before.
@@ -269,7 +278,9 @@ SkinnedCandidate BoneSearch::likeliest(double step) {
   const std::vector<Candidate> list = candidates(step);
   const bool fast = context_.settings.preset == Preset::kFast;
   const double most = (fast ? kWithoutTrial : 1.0) * one_bone_cost(step);
-  if (list.empty() || list.front().expected >= most) return one_bone(step);
+  const bool has_bones =
+      !list.empty() && list.front().is_likely && list.front().expected < most;
+  if (!has_bones) return one_bone(step);
   Growth& growth = growths_[list.front().growth];
   return candidate(growth, growth.bones[list.front().bones], step);
 }
@@ -317,6 +328,12 @@ std::size_t BoneSearch::best_of(std::span<const BestTrial> drafts, const Skinned
   return is_better(*drafts[second], *drafts[first], trials, error) ? second : first;
 }
 
+// Whether a draft takes fewer bits than another by more than drafts are wrong by.
+bool BoneSearch::is_clearly_better(const SkinnedTrial& draft, const SkinnedTrial& other) {
+  return bits_at_equal_error(draft.bits, draft.error) <
+         (1.0 - kTryMargin) * bits_at_equal_error(other.bits, other.error);
+}
+
 SkinnedTrial BoneSearch::search(const SkinnedTrials& trials,
                                 std::optional<double> wanted_error) {
   if (context_.settings.main.bones > 0) return try_requested(trials);
@@ -333,7 +350,13 @@ SkinnedTrial BoneSearch::search(const SkinnedTrials& trials,
     const auto part = static_cast<double>(++done) / static_cast<double>(list.size());
     progress_(kFitted + (kDrafted - kFitted) * part);
   });
-  const std::size_t best = best_of(drafts, trials, wanted_error);
+  const auto num_likely = static_cast<std::size_t>(
+      std::count_if(list.begin(), list.end(), [](const Candidate& c) { return c.is_likely; }));
+  const std::span<const BestTrial> all = drafts;
+  std::size_t best = best_of(all.first(num_likely + 1), trials, wanted_error);
+  for (std::size_t i = num_likely + 1; i < drafts.size(); ++i) {
+    if (is_clearly_better(*drafts[i], *drafts[best])) best = i;
+  }
   progress_(kCompared);
   BestTrial cheapest = std::move(drafts[best]);
   if (best > 0 && context_.settings.preset == Preset::kSlow) {

@@ -60,8 +60,9 @@ class BoneSearch {
   };
   struct Candidate {
     std::size_t growth;
-    std::size_t bones;  // index
-    double expected;    // cost
+    std::size_t bones;      // index
+    double expected;        // cost
+    bool is_likely = true;  // by that cost
   };
 
   Growth start(std::uint32_t influences) const;
@@ -78,6 +79,7 @@ class BoneSearch {
   std::vector<Candidate> candidates(double step);
   bool is_better(const SkinnedTrial& second, const SkinnedTrial& first,
                  const SkinnedTrials& trials, double wanted_error) const;
+  static bool is_clearly_better(const SkinnedTrial& draft, const SkinnedTrial& other);
   std::size_t best_of(std::span<const BestTrial> drafts, const SkinnedTrials& trials,
                       std::optional<double> wanted_error) const;
   BestTrial polish(const SkinnedTrials& trials, const Candidate& chosen);
