@@ -2,6 +2,7 @@
 """Arithmetic of scripts/compare_gltf, without node and without any codec."""
 
 import array
+import copy
 import math
 import pathlib
 import struct
@@ -77,6 +78,9 @@ class Drawn(unittest.TestCase):
         angle = math.degrees(math.acos(0.64 + 0.36 * math.cos(math.radians(10))))
         for found_angle in soup.normal_errors_degrees(source, other, found, 1):
             self.assertAlmostEqual(found_angle, angle, 6)
+        without_extent = copy.deepcopy(other)
+        without_extent.normals = [[0.0] * len(n) for n in other.normals]
+        self.assertIsNone(soup.normal_errors_degrees(source, without_extent, found, 0))
         other.normals = []
         self.assertIsNone(soup.normal_errors_degrees(source, other, found, 0))
 

@@ -187,7 +187,7 @@ def uv_error_steps(source, other, found):
 
 def normal_errors_degrees(source, other, found, sample_number):
     """(mean, 99th percentile, largest) angle between normals of corners; None: one of the files
-    has none."""
+    has none, or none of a length where the other has one."""
     if not source.normals or not other.normals:
         return None
     p, q = source.normals[sample_number], other.normals[sample_number]
@@ -201,6 +201,8 @@ def normal_errors_degrees(source, other, found, sample_number):
             cross = math.hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                                a[0] * b[1] - a[1] * b[0])
             angles.append(math.degrees(math.atan2(cross, sum(x * y for x, y in zip(a, b)))))
+    if not angles:
+        return None
     angles.sort()
     return math.fsum(angles) / len(angles), angles[99 * len(angles) // 100], angles[-1]
 
