@@ -17,7 +17,8 @@ namespace rlpc {
 namespace {
 
 // Frames are held until their span is encoded.
-constexpr SourceMemory kHeldFrames{.bytes_of_position = 3 * (sizeof(float) + sizeof(double))};
+constexpr SourceMemory kHeldFrames{.bytes_of_position =
+                                       3 * (sizeof(float) + sizeof(double))};  // fixed: memory
 
 }  // namespace
 
