@@ -12,6 +12,7 @@ import json
 import math
 import pathlib
 import random
+import shutil
 import subprocess
 import sys
 import unittest
@@ -32,10 +33,14 @@ class InNode(InFolder):
         if not (MODULES / "three").is_dir():
             raise unittest.SkipTest("three.js is not there: scripts/player")
         super().setUpClass()
+        # Where the package finds three.js, as installed ones do.
+        cls.package = cls.folder / "package"
+        shutil.copytree(PACKAGE, cls.package)
+        (cls.folder / "node_modules").symlink_to(MODULES)
 
     def in_node(self, script, *arguments):
         """What a script of testing/ writes."""
-        done = subprocess.run(["node", HERE / "testing" / script, MODULES, PACKAGE, *arguments],
+        done = subprocess.run(["node", HERE / "testing" / script, MODULES, self.package, *arguments],
                               capture_output=True, timeout=300, check=False)
         self.assertEqual(done.returncode, 0, done.stderr.decode())
         return json.loads(done.stdout)
