@@ -73,6 +73,8 @@ InputResult<FrameFiles> sort_frames(std::vector<std::string> paths, const std::s
   // The same order of the input, whatever lists it.
   std::sort(paths.begin(), paths.end(), natural_less);
   const FrameOrder order = find_order(paths);
+  const NameProblem problem(paths, where);
+  if (order.pointless) return problem.pointless(*order.chosen, *order.pointless);
   if (order.chosen) {
     FrameFiles files = with_notes(paths, *order.chosen);
     if (order.unlikely) {
@@ -81,7 +83,6 @@ InputResult<FrameFiles> sort_frames(std::vector<std::string> paths, const std::s
     }
     return files;
   }
-  const NameProblem problem(paths, where);
   if (!order.rivals.empty()) return problem.ambiguous(order.rivals);
   if (auto dated = sort_dates(paths)) return std::move(*dated);
   if (order.twice && !order.doubtful) return problem.twice(*order.twice);

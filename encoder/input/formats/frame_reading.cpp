@@ -36,6 +36,12 @@ bool are_frames_of_take(const Reading& reading) {
   return step < 1.1 && (last.fraction == "000" || last.fraction == "001");
 }
 
+// Whether an exponent follows, as in 1e-05.
+bool follows_mantissa(std::string_view before) {
+  return (before.ends_with('e') || before.ends_with('E')) && before.size() > 1 &&
+         is_digit(before[before.size() - 2]);
+}
+
 bool has_zero(const Reading& reading) {
   return std::any_of(reading.numbers.begin(), reading.numbers.end(),
                      [](const NameNumber& n) { return n.value() == 0.0; });
@@ -43,18 +49,9 @@ bool has_zero(const Reading& reading) {
 
 // The signs of numbers that all have the same one, a hyphen after a word.
 Signs hyphens_of(const Reading& reading) {
+  if (follows_mantissa(reading.form.before)) return Signs::kDoubtful;
   if (!reading.has_fractions || are_frames_of_take(reading)) return Signs::kNone;
   return has_zero(reading) ? Signs::kUnlikely : Signs::kDoubtful;
-}
-
-// Digits without padding, or padded with zeros to one width.
-bool are_padded_alike(const std::vector<NameNumber>& numbers) {
-  const auto shortest = std::min_element(
-      numbers.begin(), numbers.end(),
-      [](const NameNumber& a, const NameNumber& b) { return a.whole.size() < b.whole.size(); });
-  return std::all_of(numbers.begin(), numbers.end(), [&](const NameNumber& n) {
-    return n.whole.size() == shortest->whole.size() || n.whole.front() != '0';
-  });
 }
 
 // Fractions of one length, or without zeros at their ends, except that of 1.0.
@@ -69,6 +66,17 @@ bool are_fractions_alike(const std::vector<NameNumber>& numbers) {
     has_zeros |= n.fraction.size() > 1 && n.fraction.back() == '0';
   }
   return is_fixed || !has_zeros;
+}
+
+void sort_by_number(Reading& reading) {
+  std::stable_sort(reading.order.begin(), reading.order.end(),
+                   [&](std::size_t a, std::size_t b) {
+                     return is_less(reading.numbers[a], reading.numbers[b]);
+                   });
+  for (std::size_t i = 1; i < reading.order.size(); ++i) {
+    reading.has_twice |=
+        !is_less(reading.numbers[reading.order[i - 1]], reading.numbers[reading.order[i]]);
+  }
 }
 
 // Whether the number before the point has a sign, so that what follows it is no counter.
@@ -91,14 +99,7 @@ std::optional<Reading> read_numbers(const NameForm& form,
     reading.order.push_back(reading.numbers.size());
     reading.numbers.push_back(*number);
   }
-  std::stable_sort(reading.order.begin(), reading.order.end(),
-                   [&](std::size_t a, std::size_t b) {
-                     return is_less(reading.numbers[a], reading.numbers[b]);
-                   });
-  for (std::size_t i = 1; i < names.size(); ++i) {
-    reading.has_twice |=
-        !is_less(reading.numbers[reading.order[i - 1]], reading.numbers[reading.order[i]]);
-  }
+  sort_by_number(reading);
   return reading;
 }
 
@@ -118,10 +119,38 @@ Signs signs_of(const Reading& reading) {
   return count('-') > 0 ? hyphens_of(reading) : Signs::kNone;
 }
 
+bool are_padded_alike(const Reading& reading) {
+  const std::vector<NameNumber>& numbers = reading.numbers;
+  const auto shortest = std::min_element(
+      numbers.begin(), numbers.end(),
+      [](const NameNumber& a, const NameNumber& b) { return a.whole.size() < b.whole.size(); });
+  return std::all_of(numbers.begin(), numbers.end(), [&](const NameNumber& n) {
+    return n.whole.size() == shortest->whole.size() || n.whole.front() != '0';
+  });
+}
+
 bool can_be_written(const Reading& reading) {
   if (reading.has_fractions) return are_fractions_alike(reading.numbers);
   return !is_after_point(reading) ||
-         (are_padded_alike(reading.numbers) && !follows_negative_number(reading.form.before));
+         (are_padded_alike(reading) && !follows_negative_number(reading.form.before));
+}
+
+std::optional<Reading> read_as_fractions(const Reading& reading) {
+  std::string_view before = reading.form.before;
+  for (int i = 0; i < 2 && !before.empty() && !is_digit(before.back()); ++i) {
+    before.remove_suffix(1);
+  }
+  const bool follows_digits =
+      before.size() < reading.form.before.size() && !before.empty() && is_digit(before.back());
+  if (!follows_digits || is_after_point(reading)) return std::nullopt;
+  Reading fractions{.form = reading.form, .numbers = {}, .order = reading.order};
+  fractions.has_fractions = true;
+  for (const NameNumber& n : reading.numbers) {
+    if (n.sign != '\0' || !n.fraction.empty()) return std::nullopt;
+    fractions.numbers.push_back({.whole = "0", .fraction = n.whole});
+  }
+  sort_by_number(fractions);
+  return fractions;
 }
 
 bool is_after_point(const Reading& reading) {

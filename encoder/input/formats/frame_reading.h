@@ -36,9 +36,16 @@ enum class Signs : std::uint8_t {
 // both exist: a hyphen is more likely a separator there if one of the times is 0.
 Signs signs_of(const Reading& reading);
 
+// Whether whole numbers are without padding, or padded with zeros to one width.
+bool are_padded_alike(const Reading& reading);
+
 // Whether a program writes these digits as numbers with fractions, or as a counter that
 // follows a point: a fixed number of digits, or no zeros that can be left out.
 bool can_be_written(const Reading& reading);
+
+// The whole numbers of a reading as fractions, if they follow other digits and, in place of a
+// point, one or two other characters: of t_0_25 or t0p25, 0.25.
+std::optional<Reading> read_as_fractions(const Reading& reading);
 
 // Whether the digits of the reading follow a point after other digits, as in v003.0001.
 bool is_after_point(const Reading& reading);

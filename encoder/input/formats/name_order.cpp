@@ -159,6 +159,21 @@ std::vector<Reading> rivals_of(const std::vector<Reading>& readings) {
   return rivals;
 }
 
+// Whole numbers as fractions, if they are likely enough: t_0_25, t_0_5, t_0_75 count in no
+// steps, and the zeros of t_0_041667 and t_0_125 pad to no width.
+std::optional<Reading> likely_fractions(const Reading& counted) {
+  auto fractions = read_as_fractions(counted);
+  if (!fractions || fractions->has_twice || fractions->order == counted.order ||
+      !can_be_written(*fractions)) {
+    return std::nullopt;
+  }
+  if (!are_padded_alike(counted)) return fractions;
+  const bool are_steps_equal = steps_of(*fractions).regularity == Regularity::kEqualSteps;
+  const bool is_likely =
+      are_steps_equal && steps_of(counted).regularity != Regularity::kEqualSteps;
+  return is_likely ? std::move(fractions) : std::nullopt;
+}
+
 // Decides between readings of which each gives every name a number of its own.
 void decide(const std::vector<Reading>& readings, FrameOrder& order) {
   std::vector<Reading> likely = readings;
@@ -182,6 +197,7 @@ void decide(const std::vector<Reading>& readings, FrameOrder& order) {
   });
   if (is_counted || is_one_sequence(best)) {
     order.chosen = best;
+    order.pointless = likely_fractions(best);
   } else if (!have_one_order(readings)) {
     order.rivals = rivals_of(readings);
   } else {

@@ -12,10 +12,11 @@ namespace rlpc {
 // At most one of the first three is set; none: the names do not differ in one number.
 struct FrameOrder {
   std::optional<Reading> chosen{};
-  std::vector<Reading> rivals{};      // with different orders, that can all be meant
-  std::optional<Reading> doubtful{};  // has all names, of several sequences perhaps
-  std::optional<Reading> twice{};     // gives several names one number
-  std::optional<Reading> unlikely{};  // takes hyphens for signs that the chosen one does not
+  std::vector<Reading> rivals{};       // with different orders, that can all be meant
+  std::optional<Reading> doubtful{};   // has all names, of several sequences perhaps
+  std::optional<Reading> twice{};      // gives several names one number
+  std::optional<Reading> pointless{};  // what is chosen as fractions, without a point
+  std::optional<Reading> unlikely{};   // takes hyphens for signs that the chosen one does not
 };
 
 // The readings are: numbers with fractions, a counter after a point, and each with hyphens as

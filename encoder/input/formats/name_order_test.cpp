@@ -130,6 +130,21 @@ TEST(NameOrder, IsRefusedWhereTwoCanBeMeant) {
                     {"t1.1.obj", "t1.05.obj", "t1.9.obj", "t1.33.obj"});
 }
 
+TEST(NameOrder, IsRefusedForFractionsWithoutPoint) {
+  for (const Names& names :
+       {Names{"t_0_0.obj", "t_0_041667.obj", "t_0_083333.obj", "t_0_125.obj", "t_0_166667.obj"},
+        Names{"t0p25.obj", "t0p5.obj", "t0p75.obj"},
+        Names{"t0-05.obj", "t0-1.obj", "t0-33.obj"}}) {
+    const std::string message = message_of(names);
+    EXPECT_NE(message.find("as fractions, " + names[0] + ", " + names[1]), message.npos)
+        << message;
+  }
+  expect_order({"t_1_8.obj", "t_1_9.obj", "t_1_10.obj", "t_1_11.obj"});
+  expect_order({"v2_08.obj", "v2_09.obj", "v2_10.obj", "v2_11.obj"});
+  expect_two_orders({"f_1e-03.obj", "f_1e-02.obj", "f_1e-01.obj"},
+                    {"f_1e-01.obj", "f_1e-02.obj", "f_1e-03.obj"});
+}
+
 TEST(NameOrder, IsNotThatOfTakesAndRestPoses) {
   for (const Names& names :
        {Names{"take1.0.obj", "take1.1.obj", "take1.2.obj", "take2.0.obj", "take2.1.obj"},

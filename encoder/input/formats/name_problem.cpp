@@ -48,6 +48,13 @@ InputError NameProblem::ambiguous(const std::vector<Reading>& rivals) const {
   return {text};
 }
 
+InputError NameProblem::pointless(const Reading& counted, const Reading& fractions) const {
+  return {where_ + ": the names can be read in two orders: as fractions, " +
+          beginning(fractions.order) + ", which need a point, as in t_0.25.obj; or as whole " +
+          "numbers, " + beginning(counted.order) + ", which the pattern " +
+          pattern(counted.form, counted.order) + " chooses"};
+}
+
 InputError NameProblem::different(const Reading* doubtful) const {
   const auto [form, members] = largest_group();
   const std::string all =

@@ -21,6 +21,8 @@ class NameProblem {
   InputError twice(const Reading& reading) const;
   // Several readings can be meant, with different orders.
   InputError ambiguous(const std::vector<Reading>& rivals) const;
+  // Whole numbers may be fractions, with something else in place of the point.
+  InputError pointless(const Reading& counted, const Reading& fractions) const;
   // No number is that of the frame in all names; `doubtful`, if not null, has all.
   InputError different(const Reading* doubtful) const;
 
