@@ -85,7 +85,7 @@ bool holds_attributes(SinkFormat format);
 SinkFormat sink_format(const std::string& path, SinkFormat given);
 
 // The file that a sink for `path` (as in open_frame_sink()) would replace and that is `input`,
-// by whatever name; none: it replaces no input. Of numbered files, any number counts. Cost:
+// by whatever name; none: it replaces no input. Numbered files may have any number. Cost:
 // reads the folder of numbered files.
 std::optional<std::string> find_written_input(const std::string& path, SinkFormat given,
                                               const std::string& input);

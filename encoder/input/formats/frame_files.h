@@ -14,10 +14,11 @@ struct FrameFiles {
   std::vector<std::string> notes{};
 };
 
+// Files by index.
 FrameFiles in_order(const std::vector<std::string>& paths,
                     const std::vector<std::size_t>& order);
 
-// In the order of a reading of their names; notes are added about gaps between numbers.
+// Puts files in the order of a reading of their names; adds notes about gaps between numbers.
 FrameFiles with_notes(const std::vector<std::string>& paths, const Reading& reading);
 
 }  // namespace rlpc

@@ -72,7 +72,7 @@ InputResult<FrameFiles> sort_frames(std::vector<std::string> paths, const std::s
   if (paths.size() == 1) return FrameFiles{std::move(paths)};
   // The same order of the input, whatever lists it.
   std::sort(paths.begin(), paths.end(), natural_less);
-  const FrameOrder order = find_order(paths);
+  const NameOrder order = find_order(paths);
   const NameProblem problem(paths, where);
   if (order.pointless) return problem.pointless(*order.chosen, *order.pointless);
   if (order.chosen) {

@@ -19,6 +19,7 @@ struct FrameSteps {
   std::vector<double> values;        // of the names, ascending
   std::vector<std::size_t> gaps;     // g: one lies between values g and g + 1, ascending
   double step = 0.0;                 // 0: there is one value only
+  bool is_rounded = false;           // the steps are only equal if numbers are rounded
   bool crosses_whole_frame = false;  // by one step, as from 0.9 to 1.0
   Regularity regularity = Regularity::kEqualSteps;
 };

@@ -121,17 +121,23 @@ const Reading& simplest(const std::vector<Reading>& readings) {
       [&](const Reading& a, const Reading& b) { return regularity(a) < regularity(b); });
 }
 
-// The readings that have equal steps; with two names, all have.
+// The readings that have equal steps; with two names, all have. Rounded fractions must compete
+// with no counter that has few gaps: 0.11, 0.2, 0.3 may be rounded, or 2, 3, 11.
 std::vector<Reading> only_regular(const std::vector<Reading>& readings) {
   std::vector<Reading> left;
-  std::copy_if(readings.begin(), readings.end(), std::back_inserter(left),
-               [](const Reading& reading) {
-                 return steps_of(reading).regularity == Regularity::kEqualSteps;
-               });
-  return left;
+  bool has_counter = false;
+  bool is_rounded = true;
+  for (const Reading& reading : readings) {
+    const FrameSteps steps = steps_of(reading);
+    has_counter |= !reading.has_fractions && steps.regularity != Regularity::kIrregular;
+    if (steps.regularity != Regularity::kEqualSteps) continue;
+    left.push_back(reading);
+    is_rounded = is_rounded && steps.is_rounded;
+  }
+  return has_counter && is_rounded ? std::vector<Reading>{} : left;
 }
 
-// After a version: the counter, if it has few gaps and the fractions are irregular.
+// The counter after a version, if it has few gaps and the fractions are irregular.
 std::vector<Reading> only_counted_version(const std::vector<Reading>& readings) {
   bool has_version = false;
   std::vector<Reading> left;
@@ -175,7 +181,7 @@ std::optional<Reading> likely_fractions(const Reading& counted) {
 }
 
 // Decides between readings of which each gives every name a number of its own.
-void decide(const std::vector<Reading>& readings, FrameOrder& order) {
+void decide(const std::vector<Reading>& readings, NameOrder& order) {
   std::vector<Reading> likely = readings;
   if (!have_one_order(likely)) likely = only_written(readings);
   if (likely.empty()) {
@@ -207,9 +213,9 @@ void decide(const std::vector<Reading>& readings, FrameOrder& order) {
 
 }  // namespace
 
-FrameOrder find_order(const std::vector<std::string>& names) {
+NameOrder find_order(const std::vector<std::string>& names) {
   std::vector<Reading> readings;
-  FrameOrder order;
+  NameOrder order;
   for (const NameForm& form : forms_of(names.front())) {
     auto reading = read_numbers(form, names);
     if (!reading) continue;

@@ -10,7 +10,7 @@
 namespace rlpc {
 
 // At most one of the first three is set; none: the names do not differ in one number.
-struct FrameOrder {
+struct NameOrder {
   std::optional<Reading> chosen{};
   std::vector<Reading> rivals{};       // with different orders, that can all be meant
   std::optional<Reading> doubtful{};   // has all names, of several sequences perhaps
@@ -22,6 +22,6 @@ struct FrameOrder {
 // The readings are: numbers with fractions, a counter after a point, and each with hyphens as
 // signs or separators. Where they differ in the order, the one is chosen that alone can be
 // written so, or alone has equal steps. It refers to the texts of the names.
-FrameOrder find_order(const std::vector<std::string>& names);
+NameOrder find_order(const std::vector<std::string>& names);
 
 }  // namespace rlpc

@@ -124,6 +124,8 @@ TEST(NameOrder, IsRefusedWhereTwoCanBeMeant) {
   expect_two_orders({"f_1.25.obj", "f_1.5.obj"}, {"f_1.5.obj", "f_1.25.obj"});
   expect_two_orders({"f-3.00.obj", "f-2.80.obj", "f-2.60.obj"},
                     {"f-2.60.obj", "f-2.80.obj", "f-3.00.obj"});
+  expect_two_orders({"t1.0.obj", "t1.2.obj", "t1.3.obj", "t1.4.obj", "t1.11.obj"},
+                    {"t1.0.obj", "t1.11.obj", "t1.2.obj", "t1.3.obj", "t1.4.obj"});
   expect_two_orders({"t1.8.obj", "t1.9.obj", "t1.11.obj", "t1.12.obj"},
                     {"t1.11.obj", "t1.12.obj", "t1.8.obj", "t1.9.obj"});
   expect_two_orders({"t1.05.obj", "t1.1.obj", "t1.33.obj", "t1.9.obj"},
@@ -185,7 +187,7 @@ class Printer {
     std::snprintf(text, sizeof text, format, value);
     return text;
   }
-  // As Python prints it.
+  // Prints as Python does.
   static std::string shortest(double value) {
     char text[64];
     const auto end = std::to_chars(text, text + sizeof text, value).ptr;
@@ -269,7 +271,7 @@ void expect_right_or_refused(Names (*random_names)(Random&), std::uint32_t seed)
     ++tried;
     const Names given = shuffled(names, random);
     const auto files = sort_frames(given, "FOLDER");
-    // As told, it may be the other way round for times up to -0.0.
+    // Times up to -0.0 may be the other way round, which is told.
     const bool is_told = files && !files->notes.empty() &&
                          files->notes.back().find("read as separators") != std::string::npos;
     if (is_told && files->paths != names) {
