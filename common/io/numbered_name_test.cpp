@@ -33,6 +33,28 @@ TEST(NumberedName, GivesBackTheNumber) {
   }
 }
 
+TEST(NumberedName, TakesRunsOfAnimationPrograms) {
+  const auto name = parse_pattern("walk.####.obj");
+  ASSERT_TRUE(name);
+  EXPECT_EQ(name->with(7), "walk.0007.obj");
+  EXPECT_EQ(name->number_of("walk.12345.obj"), 12345U);
+  EXPECT_EQ(parse_pattern("f#.obj")->with(12), "f12.obj");
+  EXPECT_EQ(parse_pattern("f#_%03d.obj")->with(12), "f#_012.obj");
+  for (const char* pattern : {"f##_#.obj", "####################"}) {
+    EXPECT_FALSE(parse_pattern(pattern)) << pattern;
+    EXPECT_FALSE(is_pattern(pattern)) << pattern;
+  }
+  for (const char* pattern : {"f####", "%", "f_%x"}) EXPECT_TRUE(is_pattern(pattern));
+  EXPECT_FALSE(is_pattern("f_0001.obj"));
+}
+
+TEST(NumberedName, AdvisesZerosInPlaceOfBlanks) {
+  EXPECT_EQ(advice_on_pattern("f_%4d.obj"), "; for %4d, which pads with blanks, write %04d");
+  for (const char* pattern : {"f_%04d.obj", "f_%d_%d", "f_%4x", "f_%4", "%", ""}) {
+    EXPECT_EQ(advice_on_pattern(pattern), "") << pattern;
+  }
+}
+
 TEST(NumberedName, RefusesOtherPatterns) {
   for (const char* pattern :
        {"", "walk.obj", "walk_%", "walk_%04", "walk_%x.obj", "walk_%4d.obj", "%d_%d.obj", "%d%",

@@ -7,6 +7,7 @@
 import json
 import os
 import resource
+import shutil
 import signal
 import struct
 import subprocess
@@ -175,6 +176,20 @@ class SamePlaces(ToolsTest):
             self.fails(64, "is also an input", "rlpcenc", self.path("a.gltf"), "-o", self.path(name))
             self.assertEqual(self.path(name).read_bytes(), content)
         self.ok("rlpcenc", self.path("a.gltf"), "-o", out)
+
+    def test_of_numbered_files(self):
+        stream, folder = self.path("a.rlpc"), self.path("numbered")
+        folder.mkdir()
+        for name, output in (("f_3.obj", "f_%d.obj"), ("f_0003.obj", "f_####.obj"),
+                             ("frame_0003.obj", ""), ("f_9.ply", "f_%d.ply")):
+            for place in (shutil.copy, os.link, os.symlink):
+                place(stream, folder / name)
+                source = folder / name if place is shutil.copy else stream
+                self.fails(64, f"{name}: is also an input", "rlpcdec", source, "-o",
+                           folder / output)
+                self.assertEqual((folder / name).read_bytes(), stream.read_bytes())
+                (folder / name).unlink()
+        self.assertEqual(list(folder.iterdir()), [])
 
     def test_of_the_decoder(self):
         stream = self.path("a.rlpc")

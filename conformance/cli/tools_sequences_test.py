@@ -46,6 +46,35 @@ class Sequences(ToolsTest):
         folder = self.put(["sim.-002.obj", "sim.-001.obj", "sim.0000.obj", "sim.0001.obj"])
         self.assertEqual(self.positions(folder / "sim.%04d.obj"), [0, 1, 2, 3])
 
+    def test_times_are_in_order_or_refused_with_both_orders(self):
+        for pattern in ("t={}.obj", "v2_{}.obj"):
+            names = [pattern.format(round(i / 24, 6)) for i in range(8)]
+            folder = self.put(names)
+            self.assertEqual(self.positions(folder), list(range(8)))
+            for name in names:
+                (folder / name).unlink()
+        folder = self.put([f"f-{3 - i / 5:.2f}.obj" for i in range(6)])
+        out = self.path("out.rlpc")
+        said = self.fails(1, "two orders", "rlpcenc", folder, "-o", out).err
+        self.assertFalse(out.exists())
+        for pattern, order in (("f%g.obj", [0, 1, 2, 3, 4, 5]), ("f-%g.obj", [5, 4, 3, 2, 1, 0])):
+            self.assertIn(str(folder / pattern), said)
+            self.assertEqual(self.positions(folder / pattern), order)
+
+    def test_patterns_take_signs_and_runs_and_tell_what_they_leave_out(self):
+        folder = self.put(["f_-2.obj", "f_-1.obj", "f_+0.obj", "f_+1.obj"])
+        self.assertEqual(self.positions(folder / "f_%d.obj"), [0, 1, 2, 3])
+        (folder / "f_0.5.obj").write_text(mesh(9))
+        self.assertIn("1 file is left out", self.ok("rlpcenc", folder / "f_%d.obj", "-o",
+                                                   self.path("a.rlpc"), "--quiet").err)
+        self.put(["g_0000.obj", "g_0001.obj"])
+        self.assertEqual(self.positions(folder / "g_####.obj"), [0, 1])
+        self.fails(1, "write %04d", "rlpcenc", folder / "g_%4d.obj", "-o", self.path("a.rlpc"))
+        self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("h_##.obj"))
+        self.assertTrue(self.path("h_01.obj").exists())
+        self.fails(64, "write %04d", "rlpcdec", self.path("a.rlpc"), "-o",
+                   self.path("h_%4d.obj"))
+
     def test_what_is_no_frame_is_an_error_that_says_how_to_choose(self):
         folder = self.put(["f_0000.obj", "f_0001.obj", "f_0002.obj"])
         (folder / "restpose.obj").write_text(mesh(9))

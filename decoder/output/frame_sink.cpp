@@ -2,8 +2,13 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string_view>
+#include <system_error>
 #include <utility>
+
+#include "common/io/numbered_name.h"
+#include "common/io/output_file.h"
 
 namespace rlpc {
 
@@ -97,6 +102,28 @@ OutputResult<std::unique_ptr<FrameSink>> open_standard_output(SinkOptions option
   return open_one_file("-", format, std::move(options));
 }
 
+// Whether a name stands for numbered files. One "#" may be part of the name of a single file,
+// or of a folder.
+bool is_numbered(const std::string& name, std::uint32_t num_frames) {
+  if (name.find('%') != std::string::npos) return true;
+  const auto numbered = parse_pattern(name);
+  return numbered && is_mesh(format_of_extension(lower_extension(name))) &&
+         numbered->width >= (num_frames == 1 ? 2 : 1);
+}
+
+std::string name_in_folder(SinkFormat format) {
+  return "frame_%04d" + std::string(extension_of(format));
+}
+
+// The pattern of the files that go to `path`, perhaps a folder; none: one file does.
+std::optional<fs::path> pattern_of(const fs::path& path, SinkFormat format) {
+  if (!is_mesh(format) || path == "-") return std::nullopt;
+  const std::string name = path.filename().string();
+  if (is_numbered(name, 0)) return path;
+  const bool is_file = format_of_extension(lower_extension(name)) != SinkFormat::kByName;
+  return is_file ? std::nullopt : std::optional(path / name_in_folder(format));
+}
+
 }  // namespace
 
 bool holds_attributes(SinkFormat format) {
@@ -110,6 +137,27 @@ SinkFormat sink_format(const std::string& path, SinkFormat given) {
   return named != SinkFormat::kByName ? named : SinkFormat::kObj;
 }
 
+std::optional<std::string> find_written_input(const std::string& path, SinkFormat given,
+                                              const std::string& input) {
+  const SinkFormat format = sink_format(path, given);
+  const auto pattern = pattern_of(path, format);
+  if (!pattern) {
+    return OutputFile::is_same_file(path, input) ? std::optional(path) : std::nullopt;
+  }
+  const auto name = parse_pattern(pattern->filename().string());
+  if (!name) return std::nullopt;
+  const fs::path folder = pattern->has_parent_path() ? pattern->parent_path() : fs::path(".");
+  std::error_code ec;
+  for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+    const std::string file = it->path().filename().string();
+    if (!name->number_of(file)) continue;
+    if (OutputFile::is_same_file(it->path().string(), input)) {
+      return (pattern->parent_path() / file).string();
+    }
+  }
+  return std::nullopt;
+}
+
 OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path,
                                                          SinkOptions options) {
   const SinkFormat format = sink_format(path, options.format);
@@ -118,7 +166,7 @@ OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path
   }
   if (path == "-") return open_standard_output(std::move(options));
   const fs::path name = fs::path(path).filename();
-  if (name.string().find('%') != std::string::npos) {
+  if (is_numbered(name.string(), options.num_frames)) {
     if (!is_mesh(format)) {
       return misuse(path + ": numbered names are for .obj and .ply files; one " +
                     std::string(extension_of(format)) + " file holds all frames");
@@ -148,8 +196,8 @@ OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path
                   " files; expected .rlpd, .pc2, .mdd, .glb, frame_%04d.obj, "
                   "frame_%04d.ply, or a folder (ending in / if its name has a dot)");
   }
-  const std::string pattern = "frame_%04d" + std::string(extension_of(format));
-  return open_mesh_sink((fs::path(path) / pattern).string(), format, std::move(options));
+  return open_mesh_sink((fs::path(path) / name_in_folder(format)).string(), format,
+                        std::move(options));
 }
 
 }  // namespace rlpc

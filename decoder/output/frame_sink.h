@@ -85,8 +85,14 @@ bool holds_attributes(SinkFormat format);
 // The format to use: `given` unless kByName, otherwise from the form of `path`; never kByName.
 SinkFormat sink_format(const std::string& path, SinkFormat given);
 
+// The file that a sink for `path` (as in open_frame_sink()) would replace and that is `input`,
+// by whatever name; none: it replaces no input. Numbered files may have any number. Cost:
+// reads the folder of numbered files.
+std::optional<std::string> find_written_input(const std::string& path, SinkFormat given,
+                                              const std::string& input);
+
 // Opens a sink for options.format or, if that is kByName, for the form of `path`:
-//   out/frame_%04d.obj  OBJ sequence (also %d, or another width); likewise .ply
+//   out/frame_%04d.obj  OBJ sequence (also %d, ####, or another width); likewise .ply
 //   x.rlpd              integer positions and their grid (Annex A)
 //   x.pc2, x.mdd        point cache; x.obj beside it holds triangles and first frame
 //                       (all OBJ files: a .mtl file beside them, if there are materials)

@@ -167,8 +167,9 @@ OutputResult<std::unique_ptr<FrameSink>> open_mesh_sink(const std::string& patte
   auto name = parse_pattern(path.filename().string());
   if (!name) {
     return OutputError{pattern +
-                           ": expected one %d or %04d (any width) in the file name, as in "
-                           "out/frame_%04d.obj",
+                           ": expected one %d, %04d or #### (any width) in the file name, as "
+                           "in out/frame_%04d.obj" +
+                           advice_on_pattern(path.filename().string()),
                        true};
   }
   fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kExamples = R"(OUT is one of
   clip.pc2, clip.mdd      point cache, with clip.obj beside it for the triangles
   clip.glb                glTF: bones, or a morph target for each frame (--as)
-  out/frame_%04d.obj      one OBJ (or PLY) file per frame; out/: likewise
+  out/frame_%04d.obj      one OBJ (or PLY) file per frame; also ####, out/
   clip.rlpd               exact integer positions, for conformance
 
 Examples
@@ -273,11 +273,12 @@ std::string find_usage_error(const CLI::App& app, const DecodeCommand& command) 
       return "--json and the output cannot both go to standard output";
     }
   }
+  constexpr const char* kWrittenOver = ": is also an input; choose another name for the output";
   for (const std::string& read : {command.input, command.html.reference, command.html.player}) {
-    for (const std::string& written : {command.output, command.html.output}) {
-      if (!OutputFile::is_same_file(written, read)) continue;
-      return written + ": is also an input; choose another name for the output";
-    }
+    const std::string& page = command.html.output;
+    if (OutputFile::is_same_file(page, read)) return page + kWrittenOver;
+    const auto written = find_written_input(command.output, command.format, read);
+    if (written) return *written + kWrittenOver;
   }
   if (command.ascii && sink_format(command.output, command.format) != SinkFormat::kPly) {
     return "--ascii is for PLY files, which " + command.output + " is not";

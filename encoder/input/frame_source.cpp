@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/attributes/attribute_set.h"
+#include "common/io/numbered_name.h"
 #include "common/syntax/stream_format.h"
 #include "encoder/input/axes.h"
 #include "encoder/input/formats/mesh_sequence.h"
@@ -130,12 +131,9 @@ InputResult<std::unique_ptr<FrameSource>> open_with_its_axes(const InputOptions&
   if (fs::is_directory(path, ec)) return open_listed(list_mesh_folder(path), options);
   // A file with exactly this name takes precedence over a pattern.
   const std::string name = fs::path(path).filename().string();
-  if (!exists && name.find('%') != name.npos) {
-    return open_listed(list_mesh_pattern(path), options);
-  }
-  if (!exists && name.find_first_of("*?[") != name.npos) {
-    return open_listed(list_mesh_glob(path), options);
-  }
+  const bool is_glob = name.find('%') == name.npos && name.find_first_of("*?[") != name.npos;
+  if (!exists && is_glob) return open_listed(list_mesh_glob(path), options);
+  if (!exists && is_pattern(name)) return open_listed(list_mesh_pattern(path), options);
   return open_file(options, exists);
 }
 

@@ -36,7 +36,8 @@ INPUT is one of
   mesh.obj --points cache.pc2   triangles from the mesh (OBJ, PLY, OFF), frames
                                 from the point cache (PC2, MDD)
   folder/                       every .obj in it (or .ply, .off)
-  walk_%04d.obj, 'walk_*.obj'   the matching files; walk_%g.obj: also walk_1.25,
+  walk_%04d.obj, walk_####.obj, 'walk_*.obj'
+                                the matching files; walk_%g.obj: also walk_1.25,
                                 walk_-7 and walk_007
   a_1.obj a_2.obj ...           these files
   mesh.obj                      a single frame (also .ply, .off)
@@ -46,9 +47,12 @@ INPUT is one of
   -                             any single file, from standard input
 
 Files are frames in the order of the one number in which their names differ:
--5 before -4, 1.25 between 1 and 2, 9 before 10. Names that do not fit are an
-error, such as that of a rest pose; a pattern chooses. Polygons are split into
-triangles as in the first frame.
+-5 before -4, 1.25 between 1 and 2, 9 before 10. Digits after a point are a
+fraction (t=0.041667) or a counter (v003.0995): whichever names can be written
+so, in equal steps. Names that can be read in two orders are an error, and so
+are names that do not fit, such as that of a rest pose; a pattern chooses. A
+hyphen after a word is a separator before whole numbers and times from 0 on
+(walk-1, walk-0.04). Polygons are split into triangles as in the first frame.
 
 The format is taken from the extension, otherwise detected from the contents.
 

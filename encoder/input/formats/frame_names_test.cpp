@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "encoder/input/formats/frame_pattern.h"
+
 namespace rlpc {
 namespace {
 
@@ -116,7 +118,7 @@ TEST(FrameNames, AreRefusedWithStrangers) {
   expect_refused({"take1.0001.obj", "take1.0002.obj", "take2.0001.obj"}, "take2.0001.obj");
   expect_refused({"v1.1.obj", "v1.2.obj", "v2.1.obj", "v2.2.obj"}, "v1.1.obj");
   expect_refused({"take1.1.obj", "take1.2.obj", "take2.1.obj", "take2.2.obj"}, "take1.1.obj");
-  expect_refused({"f_1.5.obj", "f_1.25.obj"}, "f_1.%d.obj or f_%g.obj");
+  expect_refused({"f_1.5.obj", "f_1.25.obj"}, "f_1.%g.obj for f_1.5.obj, f_1.25.obj");
 }
 
 TEST(FrameNames, TellsAboutGaps) {
@@ -148,7 +150,68 @@ TEST(FrameNames, AreSelectedByPatterns) {
   EXPECT_EQ(select("s.%g.obj"), (Names{"s.-0002.obj", "s.-001.obj", "s.0000.obj", "s.0001.obj",
                                        "s.1.5.obj", "s.02.obj"}));
   EXPECT_NE(select("t_%04d.obj")[0].find("no such file"), std::string::npos);
+  EXPECT_NE(select("t_%04d.obj")[0].find("t_%g.obj takes t_1.5.obj"), std::string::npos);
   EXPECT_NE(select("t_%g_%g.obj")[0].find("expected one %d"), std::string::npos);
+}
+
+TEST(FrameNames, AreSelectedByPatternsWithSigns) {
+  const Names signs{"f_-3.obj", "f_-2.obj", "f_-1.obj", "f_+0.obj", "f_+1.OBJ", "f_+2.obj"};
+  for (const char* pattern : {"f_%d.obj", "f_%g.obj", "f_#.obj"}) {
+    const auto files = select_frames(pattern, signs);
+    ASSERT_TRUE(files) << files.error().message;
+    EXPECT_EQ(files->paths, signs) << pattern;
+    EXPECT_TRUE(files->notes.empty()) << files->notes[0];
+  }
+  const Names padded{"f_-001.obj", "f_+000.obj", "f_+001.obj"};
+  EXPECT_EQ(select_frames("f_%04d.obj", padded)->paths, padded);  // as "%+04d" in C
+  EXPECT_EQ(select_frames("f_###.obj", padded)->paths, padded);
+}
+
+TEST(FrameNames, ThatPatternsLeaveOutAreTold) {
+  const auto note = [](const std::string& pattern, const Names& names) {
+    const auto files = select_frames(pattern, names);
+    if (!files) return files.error().message;
+    return files->notes.empty() ? std::string() : files->notes.back();
+  };
+  const std::string told = "left out, whose numbers are written in another way: ";
+  EXPECT_EQ(note("d/f_%d.obj", {"f_1.obj", "f_2.obj", "f_2.5.obj", "f_03.obj", "f_r.obj"}),
+            "2 files are " + told + "f_03.obj ...; d/f_%g.obj takes every number");
+  EXPECT_EQ(note("f-%g.obj", {"f-1.obj", "f-2.obj", "f0.obj"}),
+            "1 file is " + told + "f0.obj; f%g.obj takes every number");
+  EXPECT_EQ(note("f_%04d.obj", {"f_0001.obj", "f_0002.obj", "g_3.obj", "f_1b.obj"}), "");
+}
+
+// A pattern for whole numbers takes what "%g" takes, or tells of the rest.
+TEST(FrameNames, ThatPatternsLeaveOutAreToldInRandomSchemes) {
+  Random random(14);
+  int told = 0;
+  for (int i = 0; i < 3000; ++i) {
+    Names names;
+    const int first = static_cast<int>(below(random, 30)) - 15;
+    for (int number = first; number < first + 12; ++number) {
+      static const std::vector<const char*> kFormats{"%d",    "%+d",  "%04d",
+                                                     "%+04d", "%05d", "%d.0"};
+      char text[16];
+      const std::size_t odd = below(random, 8) == 0 ? below(random, kFormats.size()) : i % 5;
+      std::snprintf(text, sizeof text, kFormats[odd], number);
+      names.push_back("f_" + std::string(text) + ".obj");
+    }
+    const auto files = select_frames(i % 2 == 0 ? "f_%d.obj" : "f_####.obj", names);
+    if (!files) continue;  // gaps
+    const bool is_whole = files->paths.size() == names.size();
+    ASSERT_EQ(is_whole, files->notes.empty()) << testing::PrintToString(names);
+    told += is_whole ? 0 : 1;
+  }
+  EXPECT_GT(told, 50);
+}
+
+TEST(FrameNames, AreExplainedWherePatternsAreWrong) {
+  const auto message = [](const std::string& pattern) {
+    return select_frames(pattern, {"f_0001.obj"}).error().message;
+  };
+  EXPECT_NE(message("f_%4d.obj").find("write %04d"), std::string::npos);
+  EXPECT_NE(message("f_%x.obj").find("expected one %d, %04d or ####"), std::string::npos);
+  EXPECT_NE(message("f_%x.obj").find("walk_%04d.obj"), std::string::npos);
 }
 
 // A way to name frames, with numbers of other things before and after that of the frame.

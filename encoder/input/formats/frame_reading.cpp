@@ -1,11 +1,10 @@
 #include "encoder/input/formats/frame_reading.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <string_view>
+
+#include "encoder/input/formats/frame_steps.h"
 
 namespace rlpc {
 
@@ -13,98 +12,79 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// Whether characters before numbers are signs where the reading takes them for signs, and
-// nowhere else. A sign follows a separator, or is missing in some names; the hyphen of walk-1
-// follows a word.
-bool are_signs_plausible(const Reading& reading) {
-  const std::string_view before = reading.form.before;
-  const auto is_signed = [](const NameNumber& n) { return n.sign != '\0'; };
-  const auto count = std::count_if(reading.numbers.begin(), reading.numbers.end(), is_signed);
-  const auto all = static_cast<std::ptrdiff_t>(reading.numbers.size());
-  if (count > 0) return count < all || before.empty() || !is_part_of_word(before.back());
-  const std::size_t sign = sign_length_before(before, before.size());
-  if (sign == 0) return true;
-  return before.size() > sign && is_part_of_word(before[before.size() - sign - 1]);
+// Whether a hyphen that ends at `end` follows neither a separator nor the beginning.
+bool follows_word(std::string_view text, std::size_t end) {
+  return end > 0 && is_part_of_word(text[end - 1]);
 }
 
-// Whether "v" alone stands before the number: the whole part is a version, not a frame.
-bool follows_version(std::string_view before) {
-  if (!before.ends_with('v') && !before.ends_with('V')) return false;
-  before.remove_suffix(1);
-  return before.empty() || is_digit(before.back()) || !is_part_of_word(before.back());
+// Frames of one take, as in take-2.0001, which no times are: they count in small steps, with
+// four digits or more, or with three from 0 or 1 on.
+bool are_frames_of_take(const Reading& reading) {
+  const NameNumber& first = reading.numbers[reading.order.front()];
+  const NameNumber& last = reading.numbers[reading.order.back()];
+  const std::size_t digits = first.fraction.size();
+  const bool is_one_take =
+      !first.significant().empty() &&
+      std::all_of(reading.numbers.begin(), reading.numbers.end(), [&](const NameNumber& n) {
+        return n.whole == first.whole && n.fraction.size() == digits;
+      });
+  if (!is_one_take || digits < 3) return false;
+  const FrameSteps steps = steps_of(reading);
+  if (steps.regularity == Regularity::kIrregular) return false;
+  const double step = steps.step * std::pow(10.0, static_cast<double>(digits));
+  if (digits > 3) return step < 5.5;
+  return step < 1.1 && (last.fraction == "000" || last.fraction == "001");
 }
 
-// Whether x is a whole number of parts, as many a unit as frames are usually divided into.
-bool divides(const std::vector<NameNumber>& numbers, int parts, bool is_rounded) {
-  return std::all_of(numbers.begin(), numbers.end(), [&](const NameNumber& n) {
-    const double x = n.value() * parts;
-    double rounding = is_rounded ? 0.5 * parts : 0.0;
-    for (std::size_t digit = 0; digit < n.fraction.size(); ++digit) rounding /= 10.0;
-    return (!is_rounded || n.fraction.size() != 1) &&
-           std::abs(x - std::round(x)) <= rounding + 1e-9 * parts;
-  });
+// Whether an exponent follows, as in 1e-05.
+bool follows_mantissa(std::string_view before) {
+  return (before.ends_with('e') || before.ends_with('E')) && before.size() > 1 &&
+         is_digit(before[before.size() - 2]);
 }
 
-bool are_subframes(const std::vector<NameNumber>& numbers) {
-  constexpr std::array<int, 6> kExact{2, 4, 5, 8, 10, 16};
-  constexpr std::array<int, 3> kRounded{3, 6, 12};  // 0.33, 0.67
-  return std::any_of(kExact.begin(), kExact.end(),
-                     [&](int parts) { return divides(numbers, parts, false); }) ||
-         std::any_of(kRounded.begin(), kRounded.end(),
-                     [&](int parts) { return divides(numbers, parts, true); });
+bool has_zero(const Reading& reading) {
+  return std::any_of(reading.numbers.begin(), reading.numbers.end(),
+                     [](const NameNumber& n) { return n.value() == 0.0; });
 }
 
-bool is_even(const Reading& reading) {
-  const auto values = sorted_values(reading);
-  return count_gaps(values, smallest_step(values)) == 0;
+// The signs of numbers that all have the same one, a hyphen after a word.
+Signs hyphens_of(const Reading& reading) {
+  if (follows_mantissa(reading.form.before)) return Signs::kDoubtful;
+  if (!reading.has_fractions || are_frames_of_take(reading)) return Signs::kNone;
+  return has_zero(reading) ? Signs::kUnlikely : Signs::kDoubtful;
 }
 
-// Digits after the point that no program writes after a number: 10 beside 9 is counted.
-enum class Digits : std::uint8_t { kEither, kFraction, kCounted };
-
-Digits kind_of_digits(const std::vector<NameNumber>& numbers) {
-  std::size_t shortest = SIZE_MAX;
+// Fractions of one length, or without zeros at their ends, except that of 1.0.
+bool are_fractions_alike(const std::vector<NameNumber>& numbers) {
+  std::size_t length = 0;
+  bool is_fixed = true;
+  bool has_zeros = false;
   for (const NameNumber& n : numbers) {
-    if (!n.fraction.empty()) shortest = std::min(shortest, n.fraction.size());
+    if (n.fraction.empty()) continue;
+    if (length == 0) length = n.fraction.size();
+    is_fixed = is_fixed && n.fraction.size() == length;
+    has_zeros |= n.fraction.size() > 1 && n.fraction.back() == '0';
   }
-  bool has_zero_before = false;
-  bool has_zero_behind = false;
-  for (const NameNumber& n : numbers) {
-    if (n.fraction.size() <= shortest || n.fraction.empty()) continue;
-    has_zero_before |= n.fraction.front() == '0';
-    has_zero_behind |= n.fraction.back() == '0';
-  }
-  if (has_zero_before == has_zero_behind) return Digits::kEither;
-  return has_zero_before ? Digits::kFraction : Digits::kCounted;
+  return is_fixed || !has_zeros;
 }
 
-// Whether each frame with parts after it is there itself, the first perhaps not.
-bool has_whole_frames(const Reading& reading) {
-  std::vector<double> whole;
-  for (const NameNumber& n : reading.numbers) {
-    const double value = n.value();
-    if (value == std::floor(value)) whole.push_back(value);
+void sort_by_number(Reading& reading) {
+  std::stable_sort(reading.order.begin(), reading.order.end(),
+                   [&](std::size_t a, std::size_t b) {
+                     return is_less(reading.numbers[a], reading.numbers[b]);
+                   });
+  for (std::size_t i = 1; i < reading.order.size(); ++i) {
+    reading.has_twice |=
+        !is_less(reading.numbers[reading.order[i - 1]], reading.numbers[reading.order[i]]);
   }
-  std::sort(whole.begin(), whole.end());
-  const double first = std::floor(reading.numbers[reading.order[0]].value());
-  return std::all_of(reading.numbers.begin(), reading.numbers.end(), [&](const NameNumber& n) {
-    const double frame = std::floor(n.value());
-    return frame == first || std::binary_search(whole.begin(), whole.end(), frame);
-  });
 }
 
-// Whether frames are missing, rather than others between.
-bool has_few_gaps(const Reading& reading) {
-  const auto values = sorted_values(reading);
-  return 2 * count_gaps(values, smallest_step(values)) < values.size() - 1;
-}
-
-// Whether what stands after points or commas can be parts of frames: not the frames of versions
-// or takes, as in take1.0001.
-bool are_fractions_plausible(const Reading& reading) {
-  return !follows_version(reading.form.before) && are_subframes(reading.numbers) &&
-         kind_of_digits(reading.numbers) != Digits::kCounted &&
-         (is_even(reading) || (has_few_gaps(reading) && has_whole_frames(reading)));
+// Whether the number before the point has a sign, so that what follows it is no counter.
+bool follows_negative_number(std::string_view before) {
+  std::size_t at = before.size() - 1;  // of the point
+  while (at > 0 && is_digit(before[at - 1])) --at;
+  const std::size_t sign = sign_length_before(before, at);
+  return sign > 0 && !follows_word(before, at - sign);
 }
 
 }  // namespace
@@ -119,50 +99,71 @@ std::optional<Reading> read_numbers(const NameForm& form,
     reading.order.push_back(reading.numbers.size());
     reading.numbers.push_back(*number);
   }
-  std::stable_sort(reading.order.begin(), reading.order.end(),
-                   [&](std::size_t a, std::size_t b) {
-                     return is_less(reading.numbers[a], reading.numbers[b]);
-                   });
-  for (std::size_t i = 1; i < names.size(); ++i) {
-    reading.has_twice |=
-        !is_less(reading.numbers[reading.order[i - 1]], reading.numbers[reading.order[i]]);
-  }
+  sort_by_number(reading);
   return reading;
 }
 
-bool is_plausible(const Reading& reading) {
-  return are_signs_plausible(reading) &&
-         (!reading.has_fractions || are_fractions_plausible(reading));
-}
-
-const Reading* choose_reading(const Reading& counted, const Reading& fractions) {
-  if (counted.order == fractions.order) return &counted;
-  const Digits digits = kind_of_digits(fractions.numbers);
-  if (digits == Digits::kFraction) return &fractions;
-  if (is_even(counted) == is_even(fractions)) return nullptr;
-  return is_even(counted) ? &counted : &fractions;
-}
-
-std::vector<double> sorted_values(const Reading& reading) {
-  std::vector<double> values;
-  for (const std::size_t name : reading.order) values.push_back(reading.numbers[name].value());
-  return values;
-}
-
-double smallest_step(const std::vector<double>& values) {
-  double step = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    step = std::min(step, values[i] - values[i - 1]);
+Signs signs_of(const Reading& reading) {
+  const std::string_view before = reading.form.before;
+  const auto count = [&](char sign) {
+    return std::count_if(reading.numbers.begin(), reading.numbers.end(),
+                         [&](const NameNumber& n) { return n.sign == sign; });
+  };
+  if (count('\0') == static_cast<std::ptrdiff_t>(reading.numbers.size())) {
+    const std::size_t sign = sign_length_before(before, before.size());
+    return sign == 0 || follows_word(before, before.size() - sign) ? Signs::kSigns
+                                                                   : Signs::kNone;
   }
-  return step;
+  if (count('\0') > 0 || (count('-') > 0 && count('+') > 0)) return Signs::kSigns;
+  if (!follows_word(before, before.size())) return Signs::kSigns;
+  return count('-') > 0 ? hyphens_of(reading) : Signs::kNone;
 }
 
-std::size_t count_gaps(const std::vector<double>& values, double step) {
-  std::size_t gaps = 0;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    if (values[i] - values[i - 1] > 1.1 * step) ++gaps;
+bool are_padded_alike(const Reading& reading) {
+  const std::vector<NameNumber>& numbers = reading.numbers;
+  const auto shortest = std::min_element(
+      numbers.begin(), numbers.end(),
+      [](const NameNumber& a, const NameNumber& b) { return a.whole.size() < b.whole.size(); });
+  return std::all_of(numbers.begin(), numbers.end(), [&](const NameNumber& n) {
+    return n.whole.size() == shortest->whole.size() || n.whole.front() != '0';
+  });
+}
+
+bool can_be_written(const Reading& reading) {
+  if (reading.has_fractions) return are_fractions_alike(reading.numbers);
+  return !is_after_point(reading) ||
+         (are_padded_alike(reading) && !follows_negative_number(reading.form.before));
+}
+
+std::optional<Reading> read_as_fractions(const Reading& reading) {
+  std::string_view before = reading.form.before;
+  for (int i = 0; i < 2 && !before.empty() && !is_digit(before.back()); ++i) {
+    before.remove_suffix(1);
   }
-  return gaps;
+  const bool follows_digits =
+      before.size() < reading.form.before.size() && !before.empty() && is_digit(before.back());
+  if (!follows_digits || is_after_point(reading)) return std::nullopt;
+  Reading fractions{.form = reading.form, .numbers = {}, .order = reading.order};
+  fractions.has_fractions = true;
+  for (const NameNumber& n : reading.numbers) {
+    if (n.sign != '\0' || !n.fraction.empty()) return std::nullopt;
+    fractions.numbers.push_back({.whole = "0", .fraction = n.whole});
+  }
+  sort_by_number(fractions);
+  return fractions;
+}
+
+bool is_after_point(const Reading& reading) {
+  const std::string_view before = reading.form.before;
+  return before.size() > 1 && (before.back() == '.' || before.back() == ',') &&
+         is_digit(before[before.size() - 2]);
+}
+
+bool follows_version(const Reading& reading) {
+  std::string_view before = reading.form.before;
+  if (!before.ends_with('v') && !before.ends_with('V')) return false;
+  before.remove_suffix(1);
+  return before.empty() || is_digit(before.back()) || !is_part_of_word(before.back());
 }
 
 }  // namespace rlpc

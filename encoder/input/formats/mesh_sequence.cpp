@@ -14,6 +14,7 @@
 #include <variant>
 
 #include "encoder/input/formats/face_match.h"
+#include "encoder/input/formats/frame_pattern.h"
 #include "encoder/input/formats/material_files.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/input_format.h"
