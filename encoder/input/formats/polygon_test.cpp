@@ -287,6 +287,18 @@ TEST(Polygon, CoversSpiralsAndCombsOfThousands) {
   expect_covered(spiral, random, "spiral");
 }
 
+// An outline that takes more comparisons than there may be is not folded silently.
+TEST(Polygon, SaysThatItGaveUp) {
+  for (const int teeth : {100, 20000}) {
+    std::vector<std::array<double, 3>> comb{{0, -1, 0}};
+    for (int i = 0; i < teeth; ++i) comb.push_back({1.0 * i, 5.0 * (i % 2), 0});
+    comb.push_back({1.0 * teeth, -1, 0});
+    bool gave_up = false;
+    split_polygon(comb, &gave_up);
+    EXPECT_EQ(gave_up, teeth > 1000) << teeth;
+  }
+}
+
 // As files have them: turned in space, with seven digits.
 TEST(Polygon, CoversOutlinesThatAreNotQuiteFlat) {
   Random random(8);
