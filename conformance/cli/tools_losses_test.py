@@ -59,6 +59,8 @@ class Losses(ToolsTest):
             self.assertTrue(found, said)
             self.assertEqual(int(found[2]), worst)
             self.assertAlmostEqual(float(found[1]), degrees[worst], delta=1)
+        live = self.ok("rlpcenc", self.path("n1"), "-o", self.path("a.rlpc"), "--low-delay", "--profile", "high")
+        self.assertIn("compares the normals of the first frame alone", live.err)
 
     def test_exact_texture_coordinates_are_written_as_they_were(self):
         draw = random.Random(2)
@@ -69,11 +71,32 @@ class Losses(ToolsTest):
         found = {float(v) for _, v in self.decoded_lines("vt")}
         self.assertEqual(found, {float(v) for v in texts})
 
+    def test_exact_normals_and_colours_have_all_their_digits(self):
+        draw = random.Random(4)
+        colours = [[draw.randrange(1000000) / 1e6 for _ in range(3)] for _ in range(SIDE * SIDE)]
+        normals = []
+        for _ in range(SIDE * SIDE):
+            n = [draw.uniform(-0.5, 0.5), draw.uniform(-0.5, 0.5), 1]
+            normals.append([x / math.hypot(*n) for x in n])
+        text = sheet("{v}//{v}", "".join("vn {} {} {}\n".format(*n) for n in normals))
+        for v, colour in enumerate(colours):
+            place = f"v {v % SIDE} {v // SIDE} 0\n"
+            text = text.replace(place, place[:-1] + " {} {} {}\n".format(*colour), 1)
+        self.encode_file(self.put("m.obj", text), "--exact-attributes", "--keep-order")
+        found = [[float(x) for x in words[3:]] for words in self.decoded_lines("v")]
+        for colour, decoded in zip(colours, found):
+            for x, y in zip(colour, decoded):
+                self.assertAlmostEqual(x, y, delta=3e-7)
+        found = [list(map(float, words)) for words in self.decoded_lines("vn")]
+        for normal in normals:
+            nearest = max(found, key=lambda n: sum(x * y for x, y in zip(n, normal)))
+            self.assertLess(math.dist(nearest, normal), 4.5e-5)  # half a step of 16 bits
+
     def test_bounds_of_a_box_are_checked(self):
         mesh = self.put("m.obj", sheet("{v}"))
         for box, words in (("0,0,0,1,-1,1", "smallest y is above the largest"), ("0,0,inf,1,1,1", "not finite"),
                            ("nan,0,0,1,1,1", "not finite"), ("0,0,0,-1e30,1,1", "smallest x")):
-            result = self.fails(64, ("--box", words), "rlpcenc", mesh, "-o", self.path("b.rlpc"), "--low-delay",
+            result = self.fails(64, ("--box", words), "rlpcenc", mesh, "-o", self.path("b.rlpc"), "--low-delay", "--profile", "high",
                                 "--box", box)
             self.assertFalse(self.path("b.rlpc").exists(), result.err)
 
@@ -89,8 +112,9 @@ class Losses(ToolsTest):
 
     def test_rlpccmp_says_what_is_rounding_alone(self):
         for lossless, words in ((True, True), (False, False)):
-            mesh = self.put("m.obj", sheet("{v}").replace("v 1 ", "v 1.1 "))
-            self.encode_file(mesh, *(["--lossless"] if lossless else ["--kg", 1]), "--keep-order")
+            text = "".join(f"v {1 + i % SIDE / 10} {1 + i // SIDE / 10} 0\n" for i in range(SIDE * SIDE))
+            mesh = self.put("m.obj", sheet("{v}").replace(SHEET, text))
+            self.encode_file(mesh, *(["--lossless", "--profile", "high"] if lossless else ["--kg", 1]), "--keep-order")
             out = self.ok("rlpccmp", mesh, self.path("a.rlpc")).out.decode()
             self.assertEqual("is the float nearest" in out, words, out)
 

@@ -136,7 +136,8 @@ TEST_F(LossesTest, TellsOfFewOfManyMaterialFiles) {
 // Not a part of it that nobody has set.
 TEST_F(LossesTest, NamesTheMemoryLimitThatIsSet) {
   put("m.mtl", "newmtl a\nKd 1 0 0\n" + std::string(3000000, '#') + "\n");
-  InputOptions options{put("m.obj", "mtllib m.mtl\nusemtl a\n" + kTriangle), "", {}};
+  InputOptions options{
+      put("m.obj", "mtllib m.mtl\nusemtl a\n" + kTriangle + "usemtl b\nf 1 2 3\n"), "", {}};
   options.max_memory_bytes = 100000000;
   expect_named(options, {"the limit of 100 MB (--max-memory)"});
 }

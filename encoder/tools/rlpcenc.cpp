@@ -382,8 +382,14 @@ InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& s
 }
 
 // Notes if INPUT is probably not what the user meant.
-std::vector<std::string> doubts(const InputOptions& input, const FrameSource& source) {
+std::vector<std::string> doubts(const EncodeOptions& o, const FrameSource& source) {
+  const InputOptions& input = o.input;
   std::vector<std::string> notes;
+  if (o.settings.low_delay && !source.attributes().later_normals.empty()) {
+    notes.emplace_back(
+        "--low-delay compares the normals of the first frame alone: those of others may move "
+        "otherwise");
+  }
   if (source.triangles().empty())
     notes.emplace_back("has no triangles; encoded as a point cloud");
   if (const auto& axes = source.axes_of_mesh()) {
@@ -421,7 +427,7 @@ int run(EncodeOptions& o) {
                                ? name_of_input(o.input.path)
                                : std::to_string(1 + o.input.more_paths.size()) + " files";
   std::vector<std::string> notes = (*source)->notes();
-  for (std::string& doubt : doubts(o.input, **source)) notes.push_back(std::move(doubt));
+  for (std::string& doubt : doubts(o, **source)) notes.push_back(std::move(doubt));
   for (const std::string& note : notes) tell_note(o, name, note);
   if (o.settings.clips.empty()) o.settings.clips = (*source)->clips();
   if (!o.settings.attributes.dropped) {

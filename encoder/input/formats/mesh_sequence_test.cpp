@@ -158,11 +158,12 @@ TEST_F(MeshSequenceFilesTest, FollowNormalsOfLaterFrames) {
   Random random(3);
   for (int i = 0; i < 50; ++i) {
     const std::size_t n = 4 + random() % 20;
-    const std::uint32_t num_frames = 2 + random() % 6;
+    const std::uint32_t num_frames = 2 + static_cast<std::uint32_t>(random() % 6);
     std::vector<std::vector<double>> angles;
     for (std::uint32_t f = 0; f < num_frames; ++f) {
       angles.emplace_back(n, 0.0);
-      for (double& angle : angles.back()) angle = f == 0 ? 0.0 : 0.1 * (random() % 15);
+      for (double& angle : angles.back())
+        angle = f == 0 ? 0.0 : 0.1 * static_cast<double>(random() % 15);
       std::string text = strip_with_normals(angles.back());
       // All corners of the first frame use the first normal.
       if (f == 0 && i % 2 == 0) {

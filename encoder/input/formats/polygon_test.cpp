@@ -289,13 +289,17 @@ TEST(Polygon, CoversSpiralsAndCombsOfThousands) {
 
 // An outline that takes more comparisons than there may be is not folded silently.
 TEST(Polygon, SaysThatItGaveUp) {
-  for (const int teeth : {100, 20000}) {
-    std::vector<std::array<double, 3>> comb{{0, -1, 0}};
-    for (int i = 0; i < teeth; ++i) comb.push_back({1.0 * i, 5.0 * (i % 2), 0});
-    comb.push_back({1.0 * teeth, -1, 0});
+  // A comb of long teeth that lean over: the box of each is in the way of all others.
+  for (const int num_corners : {200, 20000}) {
+    std::vector<std::array<double, 3>> comb{{0, -10, 0}};
+    for (int i = 0; i < num_corners; ++i) {
+      const double tooth = i % 2 == 0 ? 0.0 : num_corners;
+      comb.push_back({i + tooth, tooth, 0.0});
+    }
+    comb.push_back({1.0 * num_corners, -10, 0});
     bool gave_up = false;
     split_polygon(comb, &gave_up);
-    EXPECT_EQ(gave_up, teeth > 1000) << teeth;
+    EXPECT_EQ(gave_up, num_corners > 1000) << num_corners;
   }
 }
 
