@@ -2,6 +2,8 @@
 // text is trusted.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,6 +13,43 @@
 #include "common/json/json_text.h"
 
 namespace rlpc {
+
+// Notes where the parser refuses a text, and skips all else.
+template <class Json>
+class JsonRefusal : public nlohmann::json_sax<Json> {
+ public:
+  using typename nlohmann::json_sax<Json>::number_integer_t;
+  using typename nlohmann::json_sax<Json>::number_unsigned_t;
+  using typename nlohmann::json_sax<Json>::number_float_t;
+  using typename nlohmann::json_sax<Json>::string_t;
+  using typename nlohmann::json_sax<Json>::binary_t;
+
+  // The first byte of what is refused.
+  std::size_t position() const { return position_; }
+
+  bool null() override { return true; }
+  bool boolean(bool /*value*/) override { return true; }
+  bool number_integer(number_integer_t /*value*/) override { return true; }
+  bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
+  bool number_float(number_float_t /*value*/, const string_t& /*text*/) override {
+    return true;
+  }
+  bool string(string_t& /*value*/) override { return true; }
+  bool binary(binary_t& /*value*/) override { return true; }
+  bool start_object(std::size_t /*size*/) override { return true; }
+  bool key(string_t& /*value*/) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t /*size*/) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t end, const std::string& token,
+                   const nlohmann::detail::exception& /*why*/) override {
+    position_ = end - std::min(end, token.size());
+    return false;
+  }
+
+ private:
+  std::size_t position_ = 0;
+};
 
 // Reads a text; max_bytes: of memory for the tree (json_tree_bytes()). A byte order mark before
 // it and zero bytes behind it are skipped. Returns none if there is a problem. Cost: linear in
@@ -28,8 +67,11 @@ std::optional<Json> read_json(std::string_view text, std::uint64_t max_bytes,
   }
   Json json = Json::parse(text.begin(), text.end(), nullptr, false);
   if (!json.is_discarded()) return json;
+  JsonRefusal<Json> refusal;
+  Json::sax_parse(text.begin(), text.end(), &refusal);
   problem = {JsonProblem::kInvalid,
-             "has a number too large for a float, or half a surrogate pair"};
+             json_place(text, refusal.position()) +
+                 ": a number too large for a float, or half a surrogate pair"};
   return std::nullopt;
 }
 

@@ -6,15 +6,6 @@
 namespace rlpc {
 namespace {
 
-// "line 2, column 7"; columns are bytes.
-std::string place_in(std::string_view text, std::size_t position) {
-  const std::string_view before = text.substr(0, position);
-  const auto lines = std::count(before.begin(), before.end(), '\n');
-  const std::size_t line_end = before.rfind('\n');
-  const std::size_t column = line_end == before.npos ? position : position - line_end - 1;
-  return "line " + std::to_string(lines + 1) + ", column " + std::to_string(column + 1);
-}
-
 // Bounds the time for members of objects: about a second, and more for long texts.
 std::uint64_t max_comparisons(std::string_view text) {
   constexpr std::uint64_t kOfAnyText = 100'000'000;
@@ -24,11 +15,19 @@ std::uint64_t max_comparisons(std::string_view text) {
 
 }  // namespace
 
+std::string json_place(std::string_view text, std::size_t position) {
+  const std::string_view before = text.substr(0, position);
+  const auto lines = std::count(before.begin(), before.end(), '\n');
+  const std::size_t line_end = before.rfind('\n');
+  const std::size_t column = line_end == before.npos ? position : position - line_end - 1;
+  return "line " + std::to_string(lines + 1) + ", column " + std::to_string(column + 1);
+}
+
 std::optional<JsonProblem> find_json_problem(std::string_view text, std::uint64_t max_bytes,
                                              bool has_lists) {
   JsonShape shape;
   if (const auto fault = measure_json(text, shape)) {
-    const std::string place = place_in(text, fault->position) + ": ";
+    const std::string place = json_place(text, fault->position) + ": ";
     if (!fault->too_deep) {
       const bool at_end = fault->position >= text.size();
       return JsonProblem{JsonProblem::kInvalid,

@@ -91,9 +91,11 @@ TEST(ReadJson, TellsWhereATextIsWrong) {
   EXPECT_EQ(problem_of("[1")->message, "line 1, column 3: JSON that ends too early");
   EXPECT_EQ(problem_of("\"\xFF\"")->message, "line 1, column 2: not JSON in UTF-8");
   EXPECT_EQ(problem_of("")->kind, JsonProblem::kInvalid);
+  const std::string refused = ": a number too large for a float, or half a surrogate pair";
   for (const char* const text : {"1e999", R"("\ud800")"}) {
-    EXPECT_EQ(problem_of(text)->message,
-              "has a number too large for a float, or half a surrogate pair");
+    EXPECT_EQ(problem_of(text)->message, "line 1, column 1" + refused);
+    const std::string inside = std::string("{\n \"a\": [1, \"\\n\", ") + text + "]}";
+    EXPECT_EQ(problem_of(inside)->message, "line 2, column 17" + refused);
   }
 }
 

@@ -52,6 +52,9 @@ struct JsonProblem {
   std::uint64_t needed_bytes = 0;  // kTooLarge: memory
 };
 
+// Returns the place of a byte of a text: "line 2, column 7"; columns are bytes.
+std::string json_place(std::string_view text, std::size_t position);
+
 // Returns the problem of a text for a parser: invalid; nested too deeply; too many members in
 // objects, if these compare each name with all others (has_lists: ordered_map does);
 // max_bytes: the memory for the tree. Cost: linear in the text.

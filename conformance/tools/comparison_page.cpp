@@ -71,7 +71,7 @@ std::vector<KeyFigure> key_figures(const Distortion& d) {
           {number_text(m.rms_error_percent, 3) + " %", "of the diagonal, RMS distance"},
           {number_text(m.max_error_percent, 3) + " %", "of the diagonal, largest"},
           {number_text(m.diagonal_psnr_db, 3) + " dB", "PSNR, peak: the diagonal"},
-          {number_text(s.sted, 3), "STED"},
+          {s.has_sted ? number_text(s.sted, 3) : "none", "STED"},
           {number_text(s.mean_normal_angle, 3) + "°", "normal deviation, mean"},
           {number_text(s.max_normal_angle, 3) + "°", "normal deviation, largest"}};
 }

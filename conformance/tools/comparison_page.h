@@ -14,6 +14,8 @@ namespace rlpc {
 struct Distortion {
   Metrics metrics;
   SurfaceMetrics surface;
+  // Whether every decoded number is the float nearest to that of A: what is left is rounding.
+  bool is_rounding = false;
 };
 
 struct ComparisonPage {

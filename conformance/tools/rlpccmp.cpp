@@ -210,6 +210,7 @@ rlpc::InputResult<rlpc::Distortion> compare(const rlpc::ComparisonPair& pair,
   std::vector<float> in_order(values);
   rlpc::MetricsAccumulator metrics(a.num_vertices());
   rlpc::SurfaceAccumulator surface(a.num_vertices(), a.triangles());
+  bool is_rounding = true;
   rlpc::ProgressBar bar("comparing", progress);
   for (std::uint32_t f = 0; f < a.num_frames(); ++f) {
     if (auto error = a.read_frame(f, original)) return *error;
@@ -222,6 +223,7 @@ rlpc::InputResult<rlpc::Distortion> compare(const rlpc::ComparisonPair& pair,
       for (std::size_t c = 0; c < 3; ++c) {
         const std::size_t at = 3 * std::size_t{map[v]} + c;
         in_order[at] = decoded[3 * v + c];
+        is_rounding = is_rounding && in_order[at] == original[at];
         // What the floats of B leave of its numbers is no difference between A and B.
         if (are_finer) exact[at] -= exact_b[3 * v + c] - static_cast<double>(in_order[at]);
       }
@@ -231,7 +233,7 @@ rlpc::InputResult<rlpc::Distortion> compare(const rlpc::ComparisonPair& pair,
     if (view != nullptr && view->shows(f)) view->add_frame(original, in_order);
     bar.show((f + 1.0) / a.num_frames());
   }
-  return rlpc::Distortion{metrics.result(), surface.result()};
+  return rlpc::Distortion{metrics.result(), surface.result(), is_rounding};
 }
 
 // The shortest text that reads back as the same value.
@@ -298,6 +300,9 @@ void print_report(const rlpc::ComparisonPair& pair, const Rate& rate,
   std::printf("  RMS       %.6g (%.4f %% of the diagonal)\n", m.rms_error, m.rms_error_percent);
   std::printf("  largest   %.6g (%.4f %% of the diagonal), frame %u, vertex %u\n", m.max_error,
               m.max_error_percent, m.max_error_frame, m.max_error_vertex);
+  if (m.max_error > 0 && d.is_rounding) {
+    std::printf("  rounding  all of it: every number of B is the float nearest to that of A\n");
+  }
   if (m.max_error > 0) {
     std::printf("  PSNR      %.2f dB of the diagonal; %.2f dB, Ramanathan's, mean of frames\n",
                 m.diagonal_psnr_db, m.ramanathan_psnr_db);
@@ -305,8 +310,12 @@ void print_report(const rlpc::ComparisonPair& pair, const Rate& rate,
     std::printf("  PSNR      infinite: every frame is exact\n");
   }
   const rlpc::SurfaceMetrics& s = d.surface;
-  std::printf("  STED      %.6g (spatial part %.6g, temporal part %.6g)\n", s.sted,
-              s.sted_spatial, s.sted_temporal);
+  if (s.has_sted) {
+    std::printf("  STED      %.6g (spatial part %.6g, temporal part %.6g)\n", s.sted,
+                s.sted_spatial, s.sted_temporal);
+  } else {
+    std::printf("  STED      none: it divides by the size of the first frame, a point\n");
+  }
   std::printf("  ring      %.6g, edge difference in one ring (spatial %.6g, temporal %.6g)\n",
               s.ring_difference, s.ring_spatial, s.ring_temporal);
   std::printf("  normals   mean deviation %.4g degrees, largest %.4g, frame %u, triangle %u\n",

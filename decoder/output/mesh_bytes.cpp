@@ -9,6 +9,7 @@
 #include "common/io/messages.h"
 #include "decoder/output/obj_bytes.h"
 #include "decoder/output/ply_bytes.h"
+#include "decoder/output/stream_asset.h"
 
 namespace rlpc {
 
@@ -63,6 +64,28 @@ void append_rounded(std::string& text, float value) {
   append_digits(text, rounded == 0.0 ? 0.0 : rounded);  // no "-0"
 }
 
+void append_flipped(std::string& text, float value) {
+  const double flipped = 1.0 - double{value};
+  constexpr int kMaxDigits = 9;
+  for (int digits = 1; digits <= kMaxDigits; ++digits) {
+    std::array<char, 64> number{};
+    const auto result = std::to_chars(number.data(), number.data() + number.size(), flipped,
+                                      std::chars_format::general, digits);
+    float read = 0.0F;
+    std::from_chars(number.data(), result.ptr, read);
+    if (1.0F - read != value && digits < kMaxDigits) continue;
+    text.append(number.data(), result.ptr);
+    return;
+  }
+}
+
+void append_precise(std::string& text, double value) {
+  std::array<char, 64> digits{};
+  const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value,
+                                    std::chars_format::general, 7);
+  text.append(digits.data(), result.ptr);
+}
+
 std::string frame_rate_text(FrameRate frame_rate) {
   return std::to_string(frame_rate.numerator) + "/" + std::to_string(frame_rate.denominator);
 }
@@ -99,6 +122,16 @@ std::vector<float> MeshAttributes::colour_numbers() const {
   return numbers;
 }
 
+bool MeshAttributes::has_exact_colours() const {
+  return colour != nullptr && colour->header.kind == ValueKind::kFloats;
+}
+
+bool MeshAttributes::has_exact_normals() const {
+  constexpr std::uint32_t kExactBits = 16;
+  return normal != nullptr && normal->header.kind == ValueKind::kUnitVectors &&
+         normal->header.value_bits == kExactBits;
+}
+
 MeshNormals::MeshNormals(const MeshAttributes& attributes, const SinkOptions& options) {
   if (attributes.normal == nullptr) return;
   normals_.emplace(*attributes.normal, options.triangles, options.num_vertices);
@@ -126,13 +159,19 @@ std::vector<std::string> left_out_remark(SinkFormat format, const SinkOptions& o
     names += names.empty() ? "" : ", ";
     names += printable({set.header.name.begin(), set.header.name.end()});
   }
-  if (names.empty()) return {};
+  std::vector<std::string> remarks;
+  if (format == SinkFormat::kObj) {
+    const std::string problem = StreamAsset(options.asset).problem();
+    if (!problem.empty()) remarks.push_back(problem);
+  }
+  if (names.empty()) return remarks;
   const char* const hold =
       format == SinkFormat::kObj
           ? "OBJ holds the UVs that textures use, vertex colours, normals, "
             "materials and parts"
           : "PLY holds uv0, colour0 and normals";
-  return {"left out: " + names + " (" + hold + ")"};
+  remarks.push_back("left out: " + names + " (" + hold + ")");
+  return remarks;
 }
 
 }  // namespace rlpc

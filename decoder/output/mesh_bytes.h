@@ -18,6 +18,11 @@ void append_number(std::string& text, float value);
 void append_number(std::string& text, std::uint64_t value);
 // The same of a number rounded to four decimals.
 void append_rounded(std::string& text, float value);
+// The shortest number whose distance from 1 is `value`, as readers of OBJ files compute it in
+// floats: "0.1" for 0.9F, where 1.0F - 0.9F has nine digits.
+void append_flipped(std::string& text, float value);
+// Seven digits, as many as every float has: for colours, which are not linear in files.
+void append_precise(std::string& text, double value);
 // "30000/1001", for the comment in which rlpcenc finds the frame rate.
 std::string frame_rate_text(FrameRate frame_rate);
 
@@ -35,6 +40,9 @@ struct MeshAttributes {
   std::vector<float> uv_numbers() const;
   // [value of colour][number_components()], sRGB, 0 to 1
   std::vector<float> colour_numbers() const;
+  // Whether the numbers of these sets are those of the input, so that files have all digits.
+  bool has_exact_colours() const;
+  bool has_exact_normals() const;
 };
 
 // The texture coordinates of a set uv0, uv1, ...; null: there are none.

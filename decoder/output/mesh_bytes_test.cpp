@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <limits>
+#include <random>
 
 #include "decoder/output/obj_materials.h"
 
@@ -137,6 +140,39 @@ TEST(MeshBytes, SetsOfOtherShapesAreLeftOut) {
   }
   EXPECT_TRUE(ObjMaterials(options).files("a").empty());
   EXPECT_EQ(MeshAttributes(square()).uv_numbers().size(), 10U);
+}
+
+// Numbers with up to six digits in an OBJ file come back as they were: readers flip v.
+TEST(MeshBytes, TextureCoordinatesReadBackAsTheyWere) {
+  std::mt19937 random(1);
+  SinkOptions options = square();
+  options.attributes = {options.attributes[0]};
+  options.attributes[0].header.kind = ValueKind::kFloats;
+  for (int i = 0; i < 2000; ++i) {
+    std::string text = std::to_string(random() % 1000000);
+    text = "0." + std::string(6 - text.size(), '0') + text;
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text == "0.") text = "0";
+    const float v = std::stof(text);
+    options.attributes[0].values.assign(10, std::bit_cast<std::uint32_t>(1.0F - v));
+    const std::string obj = make_mesh_bytes(SinkFormat::kObj, options, "")->frame(kPositions);
+    const std::size_t at = obj.find(' ', obj.find("vt ") + 3) + 1;
+    const std::string found = obj.substr(at, obj.find('\n', at) - at);
+    EXPECT_EQ(std::stof(found), v) << text << " " << found;
+    EXPECT_LE(found.size(), std::max<std::size_t>(text.size(), 5)) << text << " " << found;
+  }
+}
+
+// Exact colours have seven digits, others four.
+TEST(MeshBytes, ExactColoursHaveAllDigits) {
+  SinkOptions options = square();
+  options.attributes = {options.attributes[2]};
+  AttributeSet& colour = options.attributes[0];
+  colour.header.kind = ValueKind::kFloats;
+  colour.header.scale = ValueScale::kNone;
+  colour.values.assign(12, std::bit_cast<std::uint32_t>(0.2015F));
+  const std::string obj = make_mesh_bytes(SinkFormat::kObj, options, "")->frame(kPositions);
+  EXPECT_NE(obj.find("v 0 0 0 0.486211"), std::string::npos) << obj;
 }
 
 TEST(MeshBytes, NumbersThatAreNotFiniteBecomeZero) {

@@ -75,14 +75,13 @@ void ObjBytes::append_uv(const UvList& list, std::uint32_t value) {
   std::array<float, 2> place{};
   for (std::size_t c = 0; c < 2; ++c) {
     const auto& row = list.texture.rows[c];
-    const auto x = static_cast<float>(row[0] * uv[0] + row[1] * uv[1] + row[2]);
-    place[c] = c == 0 ? x : 1.0F - x;
-    if (!std::isfinite(place[c])) place[c] = 0.0F;
+    place[c] = static_cast<float>(row[0] * uv[0] + row[1] * uv[1] + row[2]);
+    if (!std::isfinite(place[c])) place[c] = static_cast<float>(c);
   }
   header_ += "vt ";
   append_number(header_, place[0]);
   header_ += ' ';
-  append_number(header_, place[1]);
+  append_flipped(header_, place[1]);
   header_ += '\n';
 }
 
@@ -160,7 +159,12 @@ void ObjBytes::append_vertices() {
     }
     for (std::size_t c = 0; c < 3 && colour_width_ > 0; ++c) {
       bytes_ += ' ';
-      append_rounded(bytes_, colours_[colour_width_ * v + c]);
+      const float colour = colours_[colour_width_ * v + c];
+      if (attributes_.has_exact_colours()) {
+        append_precise(bytes_, colour);
+      } else {
+        append_rounded(bytes_, colour);
+      }
     }
     bytes_ += '\n';
   }
@@ -171,7 +175,11 @@ void ObjBytes::append_normals() {
   const std::span<const float> normals = normals_.of(xyz_);
   for (std::size_t i = 0; i < normals.size(); ++i) {
     bytes_ += i % 3 == 0 ? "vn " : " ";
-    append_rounded(bytes_, normals[i]);
+    if (attributes_.has_exact_normals()) {
+      append_number(bytes_, normals[i] == 0.0F ? 0.0F : normals[i]);  // no "-0"
+    } else {
+      append_rounded(bytes_, normals[i]);
+    }
     if (i % 3 == 2) bytes_ += '\n';
   }
 }

@@ -155,6 +155,29 @@ TEST(StreamAsset, WhatIsNoGlbIsLeftOut) {
   }
 }
 
+// glTF has no materials that are null, and no references to what is not there.
+TEST(StreamAsset, BrokenPartsAreLeftOutAndNamed) {
+  const std::string bad = glb_of(
+      R"({"materials":[{"name":"a","normalTexture":{"index":-1},"pbrMetallicRoughness":
+      {"baseColorTexture":{"index":0}}},null,
+      {"extensions":{"X":{"coatTexture":{"index":7}}},"emissiveTexture":3}],
+      "textures":[{"source":0,"sampler":1},{"source":99999999999}],"images":[7]})",
+      "");
+  const StreamAsset asset(bad);
+  for (const char* place :
+       {"materials[1]", "images[0]", "textures[0].sampler", "textures[1].source"}) {
+    EXPECT_NE(asset.problem().find(place), std::string::npos) << place << asset.problem();
+  }
+  EXPECT_EQ(asset.root()["materials"].dump(),
+            R"([{"name":"a","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}},{},)"
+            R"({"extensions":{"X":{}}}])");
+  EXPECT_EQ(asset.root()["textures"].dump(), R"([{"source":0},{}])");
+  SinkOptions options = mesh_with(bad);
+  options.attributes.clear();
+  const auto mesh = make_mesh_bytes(SinkFormat::kObj, options, "a.mtl");
+  EXPECT_EQ(left_out_remark(SinkFormat::kObj, options, *mesh).size(), 1U);
+}
+
 TEST(StreamAsset, SmallStreamsMakeNoLargeFiles) {
   const StreamAsset asset(with_views(R"("images":[{"bufferView":0},{"bufferView":1}])",
                                      R"({"byteLength":16},{"byteLength":16})"));

@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "common/io/binary_numbers.h"
+#include "common/io/messages.h"
 #include "common/json/json.h"
+#include "decoder/output/asset_repair.h"
 
 namespace rlpc {
 namespace {
@@ -64,10 +66,17 @@ StreamAsset::StreamAsset(const std::string& glb) {
   binary_ = chunks->binary;
   const bool good = is_good();
   if (good) problem_ = "images of the stream's materials overlap; they are left out";
-  if (good && images_fit()) {
-    problem_.clear();
-  } else {
+  if (!good || !images_fit()) {
     root_ = nullptr;
+    return;
+  }
+  problem_.clear();
+  std::string places;
+  for (const std::string& place : repair_asset(root_)) {
+    places += (places.empty() ? "" : ", ") + printable(place);
+  }
+  if (!places.empty()) {
+    problem_ = "parts of the stream's materials are broken and left out: " + places;
   }
 }
 

@@ -27,7 +27,7 @@ class StreamAsset {
 
   // An object, of which the members that are used are arrays; null: none.
   const GltfJson& root() const { return root_; }
-  // Why it is not used; empty: it is.
+  // What of it is not used, and why; empty: all of it is.
   const std::string& problem() const { return problem_; }
   // The name of a material, or of a part (a node); empty: it has none.
   std::string name_of(const char* list, std::uint32_t number) const;

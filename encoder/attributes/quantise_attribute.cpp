@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "common/attributes/recon/attribute_prediction.h"
 #include "encoder/math/det_math.h"
@@ -125,6 +126,24 @@ int log2_step_of_uv(const SourceAttribute& source, const AttributeSettings& sett
   return log2_step;
 }
 
+// Texture coordinates on a grid; as floats where a few that lie far from all others would make
+// its step so much coarser than the one asked for that the others lost their place in the
+// image.
+void quantise_uv(const SourceAttribute& source, const AttributeSettings& settings,
+                 QuantisedAttribute& out) {
+  // fixed: the step of 12 bits is then 2 texels of an image of 1024, and the largest error 1.
+  // Ranges of up to 128 images still have a grid, which takes about half the bits of floats.
+  constexpr int kMaxDoublings = 3;
+  const int log2_step = log2_step_of_uv(source, settings);
+  QuantisedAttribute on_grid = out;
+  quantise_numbers(source, log2_step, on_grid);
+  if (on_grid.header.log2_step > log2_step + kMaxDoublings) {
+    quantise_floats(source, out);
+  } else {
+    out = std::move(on_grid);
+  }
+}
+
 void quantise_normals(const SourceAttribute& source, int bits, QuantisedAttribute& out) {
   out.header.kind = ValueKind::kUnitVectors;
   out.header.num_components = 2;
@@ -207,7 +226,7 @@ QuantisedAttribute quantise_attribute(const SourceAttribute& source,
   } else if (settings.exact) {
     quantise_floats(source, out);
   } else if (source.name.starts_with("uv")) {
-    quantise_numbers(source, log2_step_of_uv(source, settings), out);
+    quantise_uv(source, settings, out);
   } else {
     quantise_numbers(source, log2_step_of_range(source, settings.number_bits), out);
   }

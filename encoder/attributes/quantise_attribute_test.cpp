@@ -2,9 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cmath>
+#include <cstddef>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
+
+#include "common/attributes/recon/attribute_prediction.h"
 
 namespace rlpc {
 namespace {
@@ -62,6 +68,32 @@ TEST(QuantiseAttribute, CoordinatesOfUnknownImagesHaveTheirBitsOverAnImage) {
   EXPECT_EQ(log2_step(coordinates(10.2F), {std::numeric_limits<double>::infinity()}), -12);
   EXPECT_EQ(log2_step(coordinates(10.2F, "uv1"), {64.0}), -12);
   EXPECT_EQ(log2_step(coordinates(10.2F, "uv"), {64.0}), -12);
+}
+
+// The value that a decoder has of a coordinate.
+double decoded(const QuantisedAttribute& q, std::size_t i) {
+  if (q.header.kind == ValueKind::kFloats) {
+    return std::bit_cast<float>(unordered_bits(q.values[i]));
+  }
+  return (static_cast<double>(q.values[i]) + q.header.origin[i % 2]) *
+         std::exp2(q.header.log2_step);
+}
+
+// Coordinates that lie within an image, but for one.
+TEST(QuantiseAttribute, CoordinatesFarFromTheOthersLeaveTheOthersTheirPrecision) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> within(0.0F, 1.0F);
+  for (const float far : {200.0F, 1000.0F, 1e5F, -1e5F, 3e7F, -1e20F, 3e38F}) {
+    SourceAttribute source;
+    source.name = "uv0";
+    source.num_components = 2;
+    for (int i = 0; i < 128; ++i) source.values.push_back(within(random));
+    source.values[random() % 128] = far;
+    const QuantisedAttribute q = quantise_attribute(source, {});
+    for (std::size_t i = 0; i < source.values.size(); ++i) {
+      EXPECT_NEAR(decoded(q, i), source.values[i], 1.01 / 1024) << far << " " << i;
+    }
+  }
 }
 
 }  // namespace

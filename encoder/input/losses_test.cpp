@@ -1,10 +1,14 @@
 // Whatever is in an input is in the stream, or named.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/testing/scratch_folder_test.h"
@@ -98,6 +102,46 @@ TEST_F(LossesTest, NamesWhatObjFilesHaveAndStreamsHaveNot) {
   EXPECT_EQ(notes_of({put("c.obj", "v 0 0 0 1\nv 1 0 0 1.0\nv 0 1 0\nf 1 2 3\n"), "", {}}), "");
 }
 
+TEST_F(LossesTest, NamesParametersOfMaterialsThatStreamsHaveNot) {
+  const auto notes_with = [&](const std::string& mtl) {
+    put("m.mtl", mtl);
+    return notes_of({put("m.obj", "mtllib m.mtl\nusemtl a\n" + kTriangle), "", {}});
+  };
+  const std::string all =
+      "Ks 1 1 1\nKa .3 .3 .3\nillum 2\nNi 1.7\nTf 0 1 0\nsharpness 3\nPs .5\nPc .4\nPcr .2\n"
+      "aniso .5\nanisor .1\nthing 3\n";
+  const std::string notes = notes_with("newmtl a\nKd 1 0 0\nNs 300\nPr .1\nPm .9\n" + all +
+                                       "newmtl spare\nKd 0 0 1\nwhatever 1\n");
+  EXPECT_EQ(notes,
+            "dropped: parameters of materials (Ks, Ka, illum, Ni, Tf, sharpness, Ps, Pc, Pcr, "
+            "aniso, anisor, thing, Ns beside Pr), 1 material that no face uses (\"spare\")\n");
+  EXPECT_EQ(notes_with("newmtl a\nKd 1 0 2\nd -halo 0.5\n"),
+            "dropped: parameters of materials (Kd outside 0 to 1, d)\n");
+  // Values that say nothing, and those that are kept.
+  EXPECT_EQ(notes_with("# by hand\nnewmtl a\nKd 1 0 0\nKe 0 1 0\nd 0.5\nPr 0.1\nPm 1\n"
+                       "Ks 0 0 0\nKa 0 0 0\nTf 1 1 1\nNi 1\nPc 0\n"),
+            "");
+  EXPECT_EQ(notes_with("newmtl a\nKd 1 0 0\nNs 300\n"), "");
+}
+
+// Each of 100,000 lines is told once, and only some of them.
+TEST_F(LossesTest, TellsOfFewOfManyMaterialFiles) {
+  std::string text;
+  for (int i = 0; i < 20000; ++i) text += "mtllib " + std::to_string(i % 1000) + ".mtl\n";
+  const std::string notes = notes_of({put("m.obj", text + kTriangle), "", {}});
+  EXPECT_EQ(std::count(notes.begin(), notes.end(), '\n'), 6) << notes;
+  EXPECT_NE(notes.find("995 other .mtl files"), std::string::npos) << notes;
+}
+
+// Not a part of it that nobody has set.
+TEST_F(LossesTest, NamesTheMemoryLimitThatIsSet) {
+  put("m.mtl", "newmtl a\nKd 1 0 0\n" + std::string(3000000, '#') + "\n");
+  InputOptions options{
+      put("m.obj", "mtllib m.mtl\nusemtl a\n" + kTriangle + "usemtl b\nf 1 2 3\n"), "", {}};
+  options.max_memory_bytes = 100000000;
+  expect_named(options, {"the limit of 100 MB (--max-memory)"});
+}
+
 TEST_F(LossesTest, NamesWhatPlyFilesHaveAndStreamsHaveNot) {
   const std::string mesh = put(
       "a.ply",
@@ -133,9 +177,23 @@ TEST_F(LossesTest, NamesTheTimesOfPointCaches) {
   expect_named(points("b.mdd", mdd({0, 0.04F, 0.2F})), {"uneven frame times", "--fps"});
   expect_named(points("c.mdd", mdd({1, 1.04F, 1.08F})), {"start 1 of the frame times"});
   expect_named(points("d.mdd", mdd({0, 1, 2})), {"interval 1 of the frame times", "--fps"});
-  InputOptions given = points("e.mdd", mdd({0, 0.04F, 0.2F}));
-  given.frame_rate = FrameRate{25, 1};
-  expect_named(given, {"uneven frame times"});
+  const float infinity = std::numeric_limits<float>::infinity();
+  const std::vector<std::pair<std::vector<float>, const char*>> losses{
+      {{0, 0.04F, 0.2F}, "uneven frame times"},
+      {{0.08F, 0.04F, 0}, "not finite and ascending"},
+      {{0, 0.08F, 0.04F}, "not finite and ascending"},
+      {{0, infinity, 1}, "not finite and ascending"},
+      {{0, 0.04F, std::nanf("")}, "not finite and ascending"},
+      {{0, 0, 0}, "which are all 0"},
+      {{2, 2, 2}, "which are all 2"}};
+  for (const auto& [times, text] : losses) {
+    InputOptions options = points("e.mdd", mdd(times));
+    expect_named(options, {text, "--fps"});
+    options.frame_rate = FrameRate{25, 1};
+    expect_named(options, {text});
+  }
+  expect_named(points("f.pc2", pc2(infinity, 1)), {"start and sample rate"});
+  expect_named(points("g.pc2", pc2(0, std::nanf(""))), {"start and sample rate"});
 }
 
 TEST_F(LossesTest, NamesTheHeaderOfAPipedPointCache) {
@@ -192,6 +250,44 @@ TEST_F(LossesTest, NamesMorphTargets) {
   builder.json.erase("animations");
   expect_named({put("b.glb", builder.glb()), "", {}},
                {"2 morph targets that no animation moves (jawOpen, smile)"});
+}
+
+TEST_F(LossesTest, NamesTargetsThatOnlyOtherAnimationsMove) {
+  GltfBuilder builder = morphing_triangle();
+  Json other = builder.json["animations"][0];
+  other["name"] = "other";
+  other["channels"] = Json::array();
+  builder.json["animations"].push_back(other);
+  const std::string file = put("a.glb", builder.glb());
+  expect_named({file, "", {}, {"1"}},
+               {"2 morph targets that the chosen animations do not move"});
+  expect_named({file, "", {}, {"all"}}, {"1 morph target that no animation moves (jawOpen)"});
+}
+
+TEST_F(LossesTest, NamesInformationAndExtensionsThatNoListNames) {
+  GltfBuilder builder = morphing_triangle();
+  builder.json["asset"]["copyright"] = "2026 Studio";
+  builder.json["asset"]["author"] = "me";
+  builder.json["nodes"][0]["extensions"]["KHR_node_visibility"]["visible"] = false;
+  builder.json["nodes"][0]["extensions"]["MSFT_lod"]["ids"] = Json::array();
+  builder.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  expect_named(
+      {put("a.glb", builder.glb()), "", {}},
+      {"asset information (\"author\", copyright)", "extension \"KHR_node_visibility\"",
+       "extension \"MSFT_lod\"", "extension \"KHR_lights_punctual\""});
+}
+
+TEST_F(LossesTest, SaysThatColoursAreClamped) {
+  GltfBuilder builder = morphing_triangle();
+  Json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["COLOR_0"] =
+      builder.add("VEC3", std::vector<float>{5, 0, -1, 0.25F, 1, 0, 0.5F, 0, 1});
+  const std::string file = put("a.glb", builder.glb());
+  expect_named({file, "", {}}, {"what 2 numbers of colours have outside 0 to 1"});
+  const auto source = open_frame_source({file, "", {}});
+  ASSERT_TRUE(source);
+  EXPECT_EQ((*source)->attributes().sets.at(0).values,
+            (std::vector<float>{1, 0, 0, 0.25F, 1, 0, 0.5F, 0, 1}));
 }
 
 TEST_F(LossesTest, NamesWhatGltfFilesHaveAndStreamsHaveNot) {

@@ -33,6 +33,7 @@ SurfaceAccumulator::SurfaceAccumulator(std::uint32_t num_vertices,
 void SurfaceAccumulator::add_frame(std::span<const float> original,
                                    std::span<const float> decoded) {
   FrameSurface frame;
+  if (frames_.empty()) starts_as_point_ = box_diagonal(original) == 0.0;
   frame.sted_spatial = sted_spatial_.add_frame(original, decoded);
   sted_temporal_.add_frame(original, decoded);
   const RingEdgeDifference::Parts ring = ring_.add_frame(original, decoded);
@@ -70,8 +71,11 @@ SurfaceMetrics SurfaceAccumulator::result() const {
   assert(!frames_.empty());
   SurfaceMetrics m;
   m.frames = frames_;
+  m.has_sted = !starts_as_point_;
   const std::vector<double> steps = sted_temporal_.steps();
-  for (std::size_t f = 1; f < frames_.size(); ++f) m.frames[f].sted_temporal = steps[f - 1];
+  for (std::size_t f = 1; f < frames_.size() && m.has_sted; ++f) {
+    m.frames[f].sted_temporal = steps[f - 1];
+  }
   for (std::size_t f = 0; f < frames_.size(); ++f) {
     m.sted_spatial += m.frames[f].sted_spatial;
     m.sted_temporal += m.frames[f].sted_temporal;
@@ -86,7 +90,8 @@ SurfaceMetrics SurfaceAccumulator::result() const {
   const auto num_frames = static_cast<double>(frames_.size());
   m.sted_spatial /= num_frames;
   if (frames_.size() > 1) m.sted_temporal /= num_frames - 1;
-  m.sted = root_of_squares(m.sted_spatial, kStedTemporalWeight * m.sted_temporal);
+  if (m.has_sted)
+    m.sted = root_of_squares(m.sted_spatial, kStedTemporalWeight * m.sted_temporal);
   m.ring_spatial /= num_frames;
   if (frames_.size() > 2) m.ring_temporal /= num_frames - 2;
   m.ring_difference = root_of_squares(m.ring_spatial, m.ring_temporal);

@@ -27,6 +27,10 @@ struct FrameSurface {
 };
 
 struct SurfaceMetrics {
+  // Whether there are steps to compare with an extent: the temporal part is relative to the
+  // diagonal of the first frame, which is 0 where that frame is a point. Without, sted and its
+  // temporal part are 0, also those of frames.
+  bool has_sted = true;
   double sted = 0;
   double sted_spatial = 0;
   double sted_temporal = 0;
@@ -58,6 +62,7 @@ class SurfaceAccumulator {
   std::vector<Triangle> triangles_;
   StedSpatial sted_spatial_;
   StedTemporal sted_temporal_;
+  bool starts_as_point_ = false;
   RingEdgeDifference ring_;
   std::vector<FrameSurface> frames_;
   double angle_sum_ = 0;  // degrees times area

@@ -94,11 +94,28 @@ TEST(SurfaceMetrics, AreDefinedWithoutTrianglesAndForZeroSize) {
   EXPECT_EQ(m.ring_difference, 0);
   EXPECT_EQ(m.mean_normal_angle, 0);
 
+  EXPECT_FALSE(m.has_sted);
+
   const std::vector<Triangle> triangles{{0, 1, 1}};
   SurfaceAccumulator flat(2, triangles);
   flat.add_frame(Frame{1, 1, 1, 1, 1, 1}, Frame{0, 1, 0, 0, 0, 2});
   EXPECT_EQ(flat.result().sted, 0);
   EXPECT_EQ(flat.result().ring_difference, 0);
+}
+
+// Steps cannot be divided by the diagonal of a point, from which the animation grows.
+TEST(SurfaceMetrics, HaveNoStedWhereTheFirstFrameIsAPoint) {
+  const std::vector<Triangle> triangles{{0, 1, 2}};
+  for (const float first : {0.0F, 1.0F}) {
+    SurfaceAccumulator metrics(3, triangles);
+    const Frame original{0, 0, 0, first, 0, 0, 0, first, 0};
+    metrics.add_frame(original, original);
+    metrics.add_frame(Frame{0, 0, 0, 5, 0, 0, 0, 5, 0}, Frame{0, 0, 0, 5, 0, 0, 0, 4, 0});
+    const SurfaceMetrics m = metrics.result();
+    EXPECT_EQ(m.has_sted, first > 0.0F);
+    EXPECT_EQ(m.sted > 0.0, m.has_sted);
+    EXPECT_EQ(m.frames[1].sted_temporal > 0.0, m.has_sted);
+  }
 }
 
 }  // namespace

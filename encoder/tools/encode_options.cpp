@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -42,6 +43,22 @@ std::optional<std::string> read_clips(const EncodeCommandLine& line) {
   return std::nullopt;
 }
 
+// Finds values of --box that are no bounds: smallest x, y, z, then largest.
+std::optional<std::string> problem_of_box(const std::vector<float>& box) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::string axis(1, "xyz"[c]);
+    if (!std::isfinite(box[c]) || !std::isfinite(box[3 + c])) {
+      return "--box: the bounds of " + axis + " are not finite numbers";
+    }
+    if (box[c] > box[3 + c]) {
+      return "--box: the smallest " + axis +
+             " is above the largest; give the smallest x,y,z, "
+             "then the largest";
+    }
+  }
+  return std::nullopt;
+}
+
 // Completes the settings that CLI11 cannot convert; returns the error, if any.
 std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   EncodeOptions& o = line.options;
@@ -68,6 +85,7 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   }
   if (!line.box.empty()) {
     if (!s.low_delay) return "--box needs --low-delay";
+    if (auto wrong = problem_of_box(line.box)) return wrong;
     std::copy_n(line.box.begin(), 6, o.box.emplace().begin());
   }
   if (!line.frame_pattern.empty() && line.frame_pattern != "auto") {

@@ -32,7 +32,8 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
       "degrees off)");
   normal_bits->check(CLI::Range(2, 16))->option_text("N")->group(group);
   app.add_flag("--exact-attributes", a.exact,
-               "Numbers as 32-bit floats, normals with 16 bits per coordinate")
+               "Numbers as 32-bit floats (texture coordinates as 1 - v, colours linear, as "
+               "in glTF), normals with 16 bits per coordinate")
       ->excludes(uv_bits)
       ->excludes(normal_bits)
       ->group(group);

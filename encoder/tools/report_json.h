@@ -30,7 +30,8 @@ inline nlohmann::ordered_json metrics_json(const Metrics& m) {
 }
 
 inline nlohmann::ordered_json surface_json(const SurfaceMetrics& m) {
-  return {{"sted", m.sted},
+  using Json = nlohmann::ordered_json;
+  return {{"sted", m.has_sted ? Json(m.sted) : Json(nullptr)},
           {"sted_spatial", m.sted_spatial},
           {"sted_temporal", m.sted_temporal},
           {"sted_dt", StedTemporal::kDt},

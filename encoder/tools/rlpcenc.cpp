@@ -61,7 +61,8 @@ void print_attributes(const EncodeReport& r) {
     if (a.is_normal) {
       std::printf(", %s", normal_text(a).c_str());
     } else if (a.largest_error > 0.0) {
-      std::printf(", largest error %.3g", a.largest_error);
+      std::printf(", largest error %.3g%s", a.largest_error,
+                  a.name.starts_with("colour") ? " (of linear colours from 0 to 1)" : "");
     }
     std::printf("\n");
   }
@@ -116,15 +117,25 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
               r.trials, s(r.trials));
 }
 
-// Whether the spacing of floats this far from the origin exceeds the error.
-bool is_far_away(const EncodeReport& report) {
+// The corner of the grid that is farthest from the origin along an axis, in steps.
+double farthest_origin(const EncodeReport& report) {
   double farthest = 0.0;
   for (const std::int32_t origin : report.header.grid.origin) {
     farthest = std::max(farthest, std::abs(static_cast<double>(origin)));
   }
+  return farthest;
+}
+
+// Whether the spacing of floats at that place exceeds the error.
+bool are_floats_coarse(const EncodeReport& report) {
   constexpr double kFloatSteps = 0x1p23;
-  return std::ldexp(farthest, report.header.grid.log2_step) >
+  return std::ldexp(farthest_origin(report), report.header.grid.log2_step) >
          kFloatSteps * report.metrics.rms_error;
+}
+
+// Whether that place is farther than the animation is large, so that moving it there helps.
+bool is_far_away(const EncodeReport& report) {
+  return farthest_origin(report) > std::ldexp(2.0, report.header.position_bits);
 }
 
 // Reports an error or rate that is far below the target.
@@ -171,7 +182,7 @@ std::string advice(const EncodeOptions& o, const EncodeReport& report) {
   if (target.kind == Target::kBpvf) {
     return "Try " + reachable + (report.num_gofs > 1 ? ", or a longer --gof" : "");
   }
-  if (is_far_away(report)) {
+  if (are_floats_coarse(report) && is_far_away(report)) {
     return "The animation is so far from the origin that floats are coarser than the target: "
            "move it to the origin, or try a larger error";
   }
@@ -258,7 +269,7 @@ int tell(const EncodeOptions& o, FrameSource& source, const Expectation& e) {
   if (*visibility) warn_if_visible(o, e.report, **visibility);
   for (const AttributeReport& a : e.report.attributes) {
     const auto warning = a.is_normal ? normal_warning(a) : std::nullopt;
-    if (warning && !o.quiet) complain(*warning);
+    if (warning) complain(*warning);  // a loss, which --quiet does not hide
   }
   return report_target(o, e.report);
 }
@@ -371,8 +382,14 @@ InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& s
 }
 
 // Notes if INPUT is probably not what the user meant.
-std::vector<std::string> doubts(const InputOptions& input, const FrameSource& source) {
+std::vector<std::string> doubts(const EncodeOptions& o, const FrameSource& source) {
+  const InputOptions& input = o.input;
   std::vector<std::string> notes;
+  if (o.settings.low_delay && !source.attributes().later_normals.empty()) {
+    notes.emplace_back(
+        "--low-delay compares the normals of the first frame alone: those of others may move "
+        "otherwise");
+  }
   if (source.triangles().empty())
     notes.emplace_back("has no triangles; encoded as a point cloud");
   if (const auto& axes = source.axes_of_mesh()) {
@@ -410,7 +427,7 @@ int run(EncodeOptions& o) {
                                ? name_of_input(o.input.path)
                                : std::to_string(1 + o.input.more_paths.size()) + " files";
   std::vector<std::string> notes = (*source)->notes();
-  for (std::string& doubt : doubts(o.input, **source)) notes.push_back(std::move(doubt));
+  for (std::string& doubt : doubts(o, **source)) notes.push_back(std::move(doubt));
   for (const std::string& note : notes) tell_note(o, name, note);
   if (o.settings.clips.empty()) o.settings.clips = (*source)->clips();
   if (!o.settings.attributes.dropped) {

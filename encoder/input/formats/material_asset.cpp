@@ -1,19 +1,15 @@
 #include "encoder/input/formats/material_asset.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <filesystem>
 #include <map>
-#include <optional>
-#include <set>
-#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "common/io/messages.h"
 #include "encoder/input/formats/material_files.h"
-#include "encoder/input/formats/mesh_text.h"
 #include "encoder/input/formats/mtl_map.h"
+#include "encoder/input/formats/mtl_reader.h"
 #include "encoder/input/glb_asset.h"
 #include "encoder/input/input_file.h"
 
@@ -21,95 +17,22 @@ namespace rlpc {
 namespace {
 
 using Json = nlohmann::json;
-using Colour = std::array<double, 3>;
-
-// What an .mtl file says of a material.
-struct Mtl {
-  std::optional<Colour> base;  // Kd, taken as linear
-  std::optional<Colour> emission;
-  std::optional<double> opacity;
-  std::optional<double> roughness;
-  std::optional<double> metalness;
-  MtlMap base_image;
-  MtlMap alpha_image;
-  MtlMap emission_image;
-  MtlMap normal_image;
-};
-
-double within_unit(double x) { return std::clamp(x, 0.0, 1.0); }
-
-std::optional<double> factor_of(TextWords& words) {
-  const auto value = parse_number(words.next());
-  return value ? std::optional(within_unit(*value)) : std::nullopt;
-}
-
-// "Kd 0.8": the same for all three.
-std::optional<Colour> colour_of(TextWords& words) {
-  const auto red = factor_of(words);
-  if (!red) return std::nullopt;
-  const auto green = factor_of(words);
-  const auto blue = factor_of(words);
-  return Colour{*red, green.value_or(*red), blue.value_or(*red)};
-}
-
-void read_line(std::string_view keyword, TextWords& words, Mtl& material) {
-  if (keyword == "Kd") {
-    material.base = colour_of(words);
-  } else if (keyword == "Ke") {
-    material.emission = colour_of(words);
-  } else if (keyword == "d") {
-    material.opacity = factor_of(words);
-  } else if (keyword == "Tr") {
-    if (const auto clear = factor_of(words)) material.opacity = 1.0 - *clear;
-  } else if (keyword == "Pr") {
-    material.roughness = factor_of(words);
-  } else if (keyword == "Pm") {
-    material.metalness = factor_of(words);
-  } else if (keyword == "Ns" && !material.roughness) {
-    // Of a Blinn-Phong highlight that is as wide.
-    const auto exponent = parse_number(words.next());
-    if (exponent) material.roughness = std::sqrt(2.0 / (std::max(*exponent, 0.0) + 2.0));
-  } else if (keyword == "map_Kd") {
-    material.base_image = read_mtl_map(words);
-  } else if (keyword == "map_d") {
-    material.alpha_image = read_mtl_map(words);
-  } else if (keyword == "map_Ke") {
-    material.emission_image = read_mtl_map(words);
-  } else if (keyword == "norm") {
-    material.normal_image = read_mtl_map(words);
-  }
-}
-
-// Returns what the text says of the materials that are used.
-std::map<std::string, Mtl, std::less<>> read_mtl(const SourceMaterials& materials) {
-  const std::string& text = materials.mtl;
-  const std::set<std::string_view> used(materials.names.begin(), materials.names.end());
-  std::map<std::string, Mtl, std::less<>> all;
-  Mtl* material = nullptr;
-  for (TextWords words(text); !words.at_end(); words.next_line()) {
-    const std::string_view keyword = words.next();
-    if (keyword == "newmtl") {
-      const std::string name = words.rest_of_words();
-      material = used.contains(name) ? &all[name] : nullptr;
-    } else if (material != nullptr) {
-      read_line(keyword, words, *material);
-    }
-  }
-  return all;
-}
-
 class AssetMaker {
  public:
   AssetMaker(const std::string& folder, bool textures, std::uint64_t max_bytes)
       : folder_(folder), textures_(textures), max_bytes_(max_bytes) {}
 
   MaterialAsset make(const SourceMaterials& materials) {
-    const auto described = read_mtl(materials);
+    MtlFile file = read_mtl(materials);
+    const auto& described = file.materials;
     const bool describes = std::any_of(
         materials.names.begin(), materials.names.end(),
         [&](const std::string& name) { return described.find(name) != described.end(); });
+    if (!file.dropped.empty()) made_.notes.push_back(std::move(file.dropped));
     // A name alone tells nothing apart.
-    if (!describes && materials.names.size() < 2 && materials.part_names.size() < 2) return {};
+    if (!describes && materials.names.size() < 2 && materials.part_names.size() < 2) {
+      return std::move(made_);
+    }
     for (const std::string& name : materials.names) {
       const auto found = described.find(name);
       Json material = json_of(found == described.end() ? Mtl() : found->second);
@@ -133,8 +56,8 @@ class AssetMaker {
       pbr["baseColorTexture"] = image;
     }
     // Kd beside a texture is seldom meant as a factor.
-    const Colour white{1.0, 1.0, 1.0};
-    const Colour base = pbr.contains("baseColorTexture") ? white : mtl.base.value_or(white);
+    const MtlColour white{1.0, 1.0, 1.0};
+    const MtlColour base = pbr.contains("baseColorTexture") ? white : mtl.base.value_or(white);
     const double opacity = mtl.opacity.value_or(1.0);
     if (base != white || opacity < 1.0) {
       pbr["baseColorFactor"] = {base[0], base[1], base[2], opacity};
@@ -145,8 +68,8 @@ class AssetMaker {
     if (opacity < 1.0 || uses_alpha) material["alphaMode"] = "BLEND";
     const Json glow = texture(mtl.emission_image);
     if (!glow.is_null()) material["emissiveTexture"] = glow;
-    const Colour black{};
-    const Colour emission = mtl.emission.value_or(glow.is_null() ? black : white);
+    const MtlColour black{};
+    const MtlColour emission = mtl.emission.value_or(glow.is_null() ? black : white);
     if (emission != black) material["emissiveFactor"] = emission;
     if (const Json image = texture(mtl.normal_image); !image.is_null()) {
       material["normalTexture"] = image;
@@ -182,6 +105,12 @@ class AssetMaker {
     std::replace(file.begin(), file.end(), '\\', '/');
     if (!stays_below(folder_, file)) return leave_out("it is not in the folder of the mesh");
     const std::string path = (std::filesystem::path(folder_) / file).string();
+    std::error_code unknown;
+    if (const auto size = std::filesystem::file_size(path, unknown);
+        !unknown && size > max_bytes_) {
+      return leave_out(path + ": " + std::to_string(size) +
+                       " bytes, too many for --max-memory");
+    }
     auto bytes = read_whole_file(path, max_bytes_);
     if (!bytes) return leave_out(bytes.error().message);
     const std::string type = type_of_image(*bytes);

@@ -12,7 +12,7 @@ namespace rlpc {
 struct MaterialAsset {
   std::string glb;                 // empty: there is nothing to keep
   std::vector<std::string> files;  // images that were read
-  std::vector<std::string> notes;  // those that could not be
+  std::vector<std::string> notes;  // about images and parameters that are not kept
 };
 
 // Returns an upper bound of the memory for make_material_asset() without images. Cost: linear

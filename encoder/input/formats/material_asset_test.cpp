@@ -50,9 +50,11 @@ TEST_F(MaterialAssetTest, NothingIsKeptOfNothing) {
 
 TEST_F(MaterialAssetTest, MaterialsComeInTheOrderOfTheirNumbers) {
   const auto made = make({"glass", "unknown", "red"},
-                         "Kd 1 1 1\nnewmtl red\nKd 0.8 0.1 x\nPr 0.25\nPm 1\nKe 2\n"
+                         "newmtl red\nKd 0.8 0.1 x\nPr 0.25\nPm 1\nKe 2\n"
                          "newmtl glass\nKd .5\nTr 0.75\nNs 198\n");
-  EXPECT_TRUE(made.notes.empty());
+  EXPECT_EQ(
+      made.notes,
+      (std::vector<std::string>{"dropped: parameters of materials (Kd, Ke outside 0 to 1)"}));
   const Json root = json_of(made.glb);
   ASSERT_EQ(root["materials"].size(), 3U);
   const Json& glass = root["materials"][0];
@@ -75,7 +77,8 @@ TEST_F(MaterialAssetTest, ImagesAreCarriedOnce) {
   const auto made = make({"a", "b"},
                          "newmtl a\nKd 0.2 0.2 0.2\nmap_Kd -s 1 1 1 maps\\skin.png\n"
                          "norm bumps.jpg\nnewmtl b\nmap_Ke maps\\skin.png\n");
-  EXPECT_TRUE(made.notes.empty());
+  EXPECT_EQ(made.notes,
+            (std::vector<std::string>{"dropped: parameters of materials (Kd beside map_Kd)"}));
   EXPECT_EQ(made.files.size(), 2U);
   const Json root = json_of(made.glb);
   EXPECT_EQ(root["images"].size(), 2U);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -106,25 +107,46 @@ std::optional<InputError> make_asset(const std::string& path, bool textures,
 
 void read_material_text(const std::string& path, std::uint64_t max_memory_bytes,
                         SingleMesh& mesh) {
-  if (mesh.material_library.empty() || path == "-") return;
+  if (mesh.material_library.empty()) return;
+  if (path == "-") {
+    mesh.notes.emplace_back("does not read .mtl files, which standard input has no folder for");
+    return;
+  }
+  constexpr std::size_t kMaxTold = 5;
+  std::size_t num_unread = 0;
+  const auto note_unread = [&](const std::string& note) {
+    if (++num_unread <= kMaxTold) mesh.notes.push_back(note);
+  };
   const fs::path folder = folder_of(path);
+  std::set<std::string, std::less<>> known;
   for (const std::string& name : library_names(mesh.material_library, folder)) {
+    if (!known.insert(name).second) continue;
     if (!stays_below(folder, name)) {
-      mesh.notes.push_back("does not read " + rlpc::quoted(name) +
-                           ", which is not in the folder of the mesh");
+      note_unread("does not read " + rlpc::quoted(name) +
+                  ", which is not in the folder of the mesh");
       continue;
     }
     const std::string file = (folder / name).string();
     const std::uint64_t held = mesh.memory_bytes() + kOfMtl * mesh.materials.mtl.size();
     const std::uint64_t left = max_memory_bytes - std::min(held, max_memory_bytes);
+    // Only a part of the memory is for the text: messages name the limit of all.
+    std::error_code unknown;
+    if (const auto size = fs::file_size(file, unknown); !unknown && size > left / kOfMtl) {
+      note_unread("materials: " + file + ": " + memory_problem(max_memory_bytes));
+      continue;
+    }
     auto text = read_whole_file(file, left / kOfMtl);
     if (!text) {
-      mesh.notes.push_back("materials: " + text.error().message);
+      note_unread("materials: " + text.error().message);
       continue;
     }
     mesh.materials.mtl += *text;
     if (!text->ends_with('\n')) mesh.materials.mtl += '\n';
     mesh.material_files.push_back(file);
+  }
+  if (num_unread > kMaxTold) {
+    mesh.notes.push_back("does not read " + std::to_string(num_unread - kMaxTold) +
+                         " other .mtl files either");
   }
   for (std::string& texture : textures_of(mesh.materials.mtl)) {
     mesh.materials.textures.push_back(std::move(texture));

@@ -11,11 +11,11 @@
 #include <span>
 #include <system_error>
 #include <utility>
-#include <variant>
 
-#include "encoder/input/formats/face_match.h"
 #include "encoder/input/formats/frame_pattern.h"
 #include "encoder/input/formats/material_files.h"
+#include "encoder/input/formats/sequence_files.h"
+#include "encoder/input/formats/sequence_normals.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/input_format.h"
 #include "encoder/input/mesh_reader.h"
@@ -85,24 +85,6 @@ bool are_near(const SourceAttribute& a, const SourceAttribute& b,
   return true;
 }
 
-// The sets of a mesh in the corners of another: corner_of[c] is the one that was c.
-void move_corners(const std::vector<std::uint32_t>& corner_of, SourceAttributes& attributes) {
-  for (SourceAttribute& set : attributes.sets) {
-    if (set.domain == AttributeDomain::kTriangle) {
-      const std::vector<float> before = set.values;
-      const std::size_t n = set.num_components;
-      for (std::size_t i = 0; i < before.size(); ++i) {
-        set.values[i] = before[n * (corner_of[3 * (i / n)] / 3) + i % n];
-      }
-    } else if (!set.value_of_corner.empty()) {
-      const std::vector<std::uint32_t> before = set.value_of_corner;
-      for (std::size_t c = 0; c < before.size(); ++c) {
-        set.value_of_corner[c] = before[corner_of[c]];
-      }
-    }
-  }
-}
-
 // Gives the numbers of a set of triangles, which stand for `names`, those that `others` give
 // these names. Numbers without a name are those of nothing.
 void renumber(const std::vector<std::string>& names, const std::vector<std::string>& others,
@@ -119,22 +101,13 @@ void renumber(const std::vector<std::string>& names, const std::vector<std::stri
   }
 }
 
-// What the first file of a sequence says of its faces and surface.
-struct FirstMesh {
-  std::vector<MeshPolygon> polygons;
-  PolygonCuts cuts;
-  std::string material_library;
-};
-
 class MeshSequence : public FrameSource {
  public:
-  MeshSequence(Shape shape, FirstMesh first, std::vector<std::string> paths,
-               std::uint64_t max_memory_bytes)
+  // files: with the triangles of `shape`.
+  MeshSequence(Shape shape, SequenceFiles files)
       : FrameSource(std::move(shape)),
-        first_(std::move(first)),
-        paths_(std::move(paths)),
-        max_memory_bytes_(max_memory_bytes),
-        has_compared_attributes_(paths_.size(), false) {
+        files_(std::move(files)),
+        has_compared_attributes_(files_.count(), false) {
     has_compared_attributes_[0] = true;
   }
 
@@ -156,92 +129,33 @@ class MeshSequence : public FrameSource {
   }
   bool is_finer_than_floats() const override { return true; }
 
-  std::string file_of(std::uint32_t frame) const override { return paths_[frame]; }
+  std::string file_of(std::uint32_t frame) const override { return files_.path(frame); }
 
  private:
   InputResult<SingleMesh> read_file_of(std::uint32_t frame) {
-    auto mesh =
-        read_mesh(paths_[frame], max_memory_bytes_, !has_compared_attributes_[frame], false);
+    auto mesh = files_.read(frame, !has_compared_attributes_[frame]);
     if (!mesh) return mesh;
-    if (auto error = fit_to_first(frame, *mesh)) return *error;
     if (!has_compared_attributes_[frame]) compare_attributes(frame, *mesh);
     return mesh;
-  }
-
-  InputError differs(std::uint32_t frame, const std::string& how) const {
-    return {paths_[frame] + ": frame " + std::to_string(frame) + " (from 0) has " + how +
-            "; every frame must have the vertices and faces of the first"};
-  }
-
-  // Gives the mesh of a frame, whose polygons are fans, the triangles of the first, in their
-  // order.
-  std::optional<InputError> fit_to_first(std::uint32_t frame, SingleMesh& mesh) const {
-    const auto counts_differ = [&](std::size_t here, std::size_t there, const char* what) {
-      return differs(frame, std::to_string(here) + " " + what + ", but " + paths_[0] + " has " +
-                                std::to_string(there));
-    };
-    if (mesh.xyz.size() / 3 != num_vertices()) {
-      return counts_differ(mesh.xyz.size() / 3, num_vertices(), "vertices");
-    }
-    if (mesh.triangles.size() != triangles().size()) {
-      return counts_differ(mesh.triangles.size(), triangles().size(), "triangles");
-    }
-    if (has_triangles_of_first(mesh.triangles)) {
-      for (SourceAttribute& set : mesh.attributes.sets) first_.cuts.apply(set.value_of_corner);
-      return std::nullopt;
-    }
-    if (2 * kMatchBytes * triangles().size() > max_memory_bytes_) {
-      return InputError{paths_[frame] + ": has faces in another order than " + paths_[0] +
-                        ", and " + memory_problem(max_memory_bytes_)};
-    }
-    return match_with_first(frame, mesh);
-  }
-
-  bool has_triangles_of_first(const std::vector<Triangle>& fans) const {
-    if (first_.cuts.empty()) return fans == triangles();
-    std::vector<Triangle> cut = fans;
-    first_.cuts.apply(cut);
-    return cut == triangles();
-  }
-
-  std::optional<InputError> match_with_first(std::uint32_t frame, SingleMesh& mesh) const {
-    std::vector<Triangle> fans = triangles();
-    first_.cuts.undo(fans);
-    auto matched = match_faces({fans, first_.polygons}, {mesh.triangles, mesh.polygons});
-    if (auto* const corner_of = std::get_if<std::vector<std::uint32_t>>(&matched)) {
-      first_.cuts.apply(*corner_of);
-      move_corners(*corner_of, mesh.attributes);
-      return std::nullopt;
-    }
-    // Perhaps one of them has been split into triangles.
-    const auto split = match_faces({triangles(), {}}, {mesh.triangles, {}});
-    if (const auto* const corner_of = std::get_if<std::vector<std::uint32_t>>(&split)) {
-      move_corners(*corner_of, mesh.attributes);
-      return std::nullopt;
-    }
-    const OddFace& odd = std::get<OddFace>(matched);
-    return differs(frame, odd.is_of_first ? "no face " + corners(odd.vertices) + ", but " +
-                                                paths_[0] + " has it"
-                                          : "the face " + corners(odd.vertices) + ", but " +
-                                                paths_[0] + " has no such face");
   }
 
   // Notes what the first file has not, or has otherwise; each set once.
   void compare_attributes(std::uint32_t frame, SingleMesh& mesh) {
     has_compared_attributes_[frame] = true;
     for (SourceAttribute& set : mesh.attributes.sets) {
-      if (set.name == "normal") continue;  // moves with the frames
       if (set.name == "material" && !mesh.materials.names.empty()) {
         renumber(mesh.materials.names, materials().names, set);
       } else if (set.name == "part" && !mesh.materials.part_names.empty()) {
         renumber(mesh.materials.part_names, materials().part_names, set);
       }
       const SourceAttribute* const first = find_attribute(attributes(), set.name);
+      // Normals move with the frames: those of the stream are compared (add_later_normals).
+      if (first != nullptr && set.name == "normal") continue;
       if (first != nullptr && are_near(*first, set, triangles())) continue;
       note_once(frame, set.name,
-                first == nullptr
-                    ? " is dropped, as " + paths_[0] + " has none"
-                    : " differs from that of " + paths_[0] + ", which is kept for all frames");
+                first == nullptr ? " is dropped, as " + files_.path(0) + " has none"
+                                 : " differs from that of " + files_.path(0) +
+                                       ", which is kept for all frames");
     }
     compare_materials(frame, mesh);
     for (const std::string& note : mesh.notes) compare_note(frame, note);
@@ -258,9 +172,10 @@ class MeshSequence : public FrameSource {
     };
     if (is_other(&SourceMaterials::names)) note_others(frame, "names of materials");
     if (is_other(&SourceMaterials::part_names)) note_others(frame, "names of parts");
-    if (!mesh.material_library.empty() && mesh.material_library != first_.material_library) {
+    if (!mesh.material_library.empty() &&
+        mesh.material_library != files_.first().material_library) {
       mesh.materials.textures.clear();
-      read_material_text(paths_[frame], max_memory_bytes_, mesh);
+      read_material_text(files_.path(frame), files_.max_memory_bytes(), mesh);
       if (mesh.materials.mtl != materials().mtl) note_others(frame, "materials (.mtl)");
     }
     if (is_other(&SourceMaterials::textures)) note_others(frame, "textures");
@@ -272,31 +187,20 @@ class MeshSequence : public FrameSource {
     const std::string kind = note.substr(0, note.find_first_of("(0123456789"));
     const auto is_known = [&](const std::string& known) { return known.starts_with(kind); };
     if (std::any_of(notes().begin(), notes().end(), is_known)) return;
-    if (noted_.insert(kind).second) add_note(paths_[frame] + ": " + note);
+    if (noted_.insert(kind).second) add_note(files_.path(frame) + ": " + note);
   }
 
   void note_others(std::uint32_t frame, const std::string& what) {
-    note_once(frame, what, " are dropped; those of " + paths_[0] + " are kept for all frames");
+    note_once(frame, what,
+              " are dropped; those of " + files_.path(0) + " are kept for all frames");
   }
 
   void note_once(std::uint32_t frame, const std::string& what, const std::string& fate) {
     if (!noted_.insert(what).second) return;
-    add_note(paths_[frame] + ": " + what + fate);
+    add_note(files_.path(frame) + ": " + what + fate);
   }
 
-  // Counted from 1, as in OBJ files.
-  static std::string corners(const std::vector<std::uint32_t>& vertices) {
-    constexpr std::size_t kMost = 8;
-    std::string text = "f";
-    for (std::size_t k = 0; k < std::min(kMost, vertices.size()); ++k) {
-      text += " " + std::to_string(std::uint64_t{vertices[k]} + 1);
-    }
-    return text + (vertices.size() > kMost ? " ..." : "");
-  }
-
-  FirstMesh first_;
-  std::vector<std::string> paths_;
-  std::uint64_t max_memory_bytes_;
+  SequenceFiles files_;
   std::vector<bool> has_compared_attributes_;  // [frame]
   std::set<std::string> noted_;                // sets, materials and notes of later files
 };
@@ -369,8 +273,14 @@ InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(FrameFiles files,
   shape.memory_bytes += more;
   for (std::string& note : files.notes) shape.notes.push_back(std::move(note));
   shape.files.insert(shape.files.begin(), paths.begin(), paths.end());
-  return std::unique_ptr<FrameSource>(std::make_unique<MeshSequence>(
-      std::move(shape), std::move(faces), std::move(paths), options.max_memory_bytes));
+  SequenceFiles fitting(std::move(paths), std::move(faces), shape.triangles, shape.num_vertices,
+                        options.max_memory_bytes);
+  add_later_normals(fitting, shape.attributes);
+  // With decoded positions of these frames.
+  for (const PosedNormals& later : shape.attributes.later_normals)
+    shape.memory_bytes += 4 * sizeof(float) * later.normals.size();
+  return std::unique_ptr<FrameSource>(
+      std::make_unique<MeshSequence>(std::move(shape), std::move(fitting)));
 }
 
 }  // namespace rlpc

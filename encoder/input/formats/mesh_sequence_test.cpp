@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <string>
@@ -132,6 +133,69 @@ TEST_F(MeshSequenceFilesTest, SplitPolygonsAsInTheFirstFrame) {
         << t[0] << t[1] << t[2];
   }
   EXPECT_EQ(result(), "");
+}
+
+// A strip of triangles; each corner has the normal of an angle, by its vertex.
+std::string strip_with_normals(const std::vector<double>& angles) {
+  std::string text;
+  for (std::size_t v = 0; v < angles.size(); ++v) {
+    text += "v " + std::to_string(v / 2) + " " + std::to_string(v % 2) + " 0\nvn " +
+            std::to_string(std::sin(angles[v])) + " 0 " + std::to_string(std::cos(angles[v])) +
+            "\n";
+  }
+  for (std::size_t v = 1; v + 2 <= angles.size(); ++v) {
+    text += "f";
+    for (const std::size_t c : {v, v + 1, v + 2}) {
+      text += " " + std::to_string(c) + "//" + std::to_string(c);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+// Whatever shares a normal in the first frame: each corner has its own in the others.
+TEST_F(MeshSequenceFilesTest, FollowNormalsOfLaterFrames) {
+  Random random(3);
+  for (int i = 0; i < 50; ++i) {
+    const std::size_t n = 4 + random() % 20;
+    const std::uint32_t num_frames = 2 + static_cast<std::uint32_t>(random() % 6);
+    std::vector<std::vector<double>> angles;
+    for (std::uint32_t f = 0; f < num_frames; ++f) {
+      angles.emplace_back(n, 0.0);
+      for (double& angle : angles.back())
+        angle = f == 0 ? 0.0 : 0.1 * static_cast<double>(random() % 15);
+      std::string text = strip_with_normals(angles.back());
+      // All corners of the first frame use the first normal.
+      if (f == 0 && i % 2 == 0) {
+        for (std::size_t at = 0; (at = text.find("//", at)) != text.npos; at += 2) {
+          const std::size_t end = text.find_first_of(" \n", at);
+          text.replace(at, end - at, "//1");
+        }
+      }
+      put("g" + std::to_string(i) + "_" + std::to_string(f) + ".obj", text);
+    }
+    const auto source = open_frame_source({path("g" + std::to_string(i) + "_%d.obj"), "", {}});
+    ASSERT_TRUE(source) << source.error().message;
+    const SourceAttributes& attributes = (*source)->attributes();
+    const SourceAttribute& normals = attributes.sets.at(0);
+    ASSERT_EQ(attributes.later_normals.size(), num_frames - 1);
+    for (const PosedNormals& later : attributes.later_normals) {
+      ASSERT_EQ(later.normals.size(), normals.values.size());
+      for (std::size_t c = 0; c < normals.value_of_corner.size(); ++c) {
+        const std::uint32_t v = (*source)->triangles()[c / 3][c % 3];
+        const std::size_t value = 3 * std::size_t{normals.value_of_corner[c]};
+        EXPECT_NEAR(later.normals[value], std::sin(angles[later.frame][v]), 1e-5);
+        EXPECT_NEAR(normals.values[value], 0.0, 1e-5);
+      }
+    }
+  }
+}
+
+TEST_F(MeshSequenceFilesTest, NameNormalsThatTheFirstFrameHasNot) {
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  put("f1.obj", points + "f 1 2 3\n");
+  put("f2.obj", points + "vn 0 0 1\nf 1//1 2//1 3//1\n");
+  EXPECT_NE(result().find("f2.obj: normal is dropped"), std::string::npos) << result();
 }
 
 TEST_F(MeshSequenceFilesTest, AreSortedByNumberWhenGivenOneByOne) {

@@ -39,6 +39,14 @@ bool append(std::size_t place, const T& value, const T& usual, const MeshLimit& 
   return true;
 }
 
+// Notes elements that get a value which the file does not give them.
+void note_gap(std::ptrdiff_t without, std::size_t all, const char* elements,
+              const std::string& what, SingleMesh& mesh) {
+  if (without == 0) return;
+  mesh.notes.push_back(std::to_string(without) + " of " + std::to_string(all) + " " + elements +
+                       " have no " + what);
+}
+
 std::vector<std::string> names_of(const std::map<std::string, std::uint32_t>& numbers) {
   std::vector<std::string> names(numbers.size());
   for (const auto& [name, number] : numbers) names[number] = name;
@@ -133,8 +141,10 @@ bool ObjAttributes::finish(SingleMesh& mesh, const MeshLimit& limit) {
   std::vector<SourceAttribute>& sets = mesh.attributes.sets;
   if (!colours_.empty()) {
     colours_.resize(mesh.xyz.size(), -1.0F);
+    const auto without = std::count(colours_.begin(), colours_.end(), -1.0F) / 3;
     std::replace(colours_.begin(), colours_.end(), -1.0F, 1.0F);
     if (are_colours(colours_)) {
+      note_gap(without, colours_.size() / 3, "vertices", "colour: they become white", mesh);
       sets.push_back(colour_attribute(std::move(colours_), 3, false, {}));
     } else {
       mesh.notes.emplace_back(
@@ -149,6 +159,8 @@ bool ObjAttributes::finish(SingleMesh& mesh, const MeshLimit& limit) {
   }
   if (!uv_.empty() && !uv_of_.empty()) {
     cut(uv_of_);
+    note_gap(std::count(uv_of_.begin(), uv_of_.end(), kNoValue), uv_of_.size(), "corners",
+             "texture coordinates: they get 0 0", mesh);
     sets.push_back(uv_attribute(std::move(uv_), std::move(uv_of_)));
   }
   mesh.materials.names = names_of(materials_);

@@ -156,5 +156,14 @@ TEST(MaterialFiles, TexturesAreListedOnce) {
             (std::vector<std::string>{"skin.png", "b.png"}));
 }
 
+// Gaps are filled, and told.
+TEST(ObjAttributes, TellsWhereValuesAreMissing) {
+  const SingleMesh some =
+      mesh_of("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0 0 1 0\nvt 0 1\nf 1/1 2/1 3\n");
+  EXPECT_EQ(some.notes, (std::vector<std::string>{
+                            "1 of 3 vertices have no colour: they become white",
+                            "1 of 3 corners have no texture coordinates: they get 0 0"}));
+}
+
 }  // namespace
 }  // namespace rlpc

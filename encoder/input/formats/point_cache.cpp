@@ -151,8 +151,8 @@ bool may_begin_cache(const std::string& begin, std::uint32_t num_vertices) {
 // What is lost of a PC2 header.
 std::vector<std::string> notes_on_pc2(const std::string& path, const Layout& layout) {
   if (!std::isfinite(layout.start) || !std::isfinite(layout.rate)) {
-    return {"start and sample rate in " + path +
-            " are not finite; they are not used, but the file may be damaged"};
+    return {"dropped: start and sample rate of " + path +
+            ", which are not finite; the file may be damaged"};
   }
   std::string list;
   if (layout.start != 0.0F) list += "start " + shortest_text(layout.start);
@@ -171,6 +171,7 @@ struct FrameTimes {
   std::optional<FrameRate> rate;
   bool may_be_times = true;  // they are finite and not descending
   bool are_even = true;
+  bool are_equal = false;  // of two frames or more
   double start = 0.0;
   double interval = 0.0;  // mean
 };
@@ -199,6 +200,7 @@ InputResult<FrameTimes> read_times(InputFile& file, const Layout& layout,
     told.are_even = told.are_even && std::abs(times[f] - expected) <= kUneven * interval;
   }
   told.interval = interval;
+  told.are_equal = count > 1 && interval == 0.0;
   if (!told.are_even) return told;
   told.rate = frame_rate_near(1.0 / interval);
   return told;
@@ -209,13 +211,15 @@ std::vector<std::string> notes_on_times(const std::string& path, const FrameTime
                                         bool has_rate) {
   const std::string fps = has_rate ? "" : "; frames are 1/30 s apart (--fps sets another rate)";
   if (!times.may_be_times) {
-    if (has_rate) return {};
-    return {"the frame times in " + path +
-            " are not finite and ascending, and not used: 30 frames per second (--fps sets "
-            "another rate)"};
+    return {"dropped: the frame times of " + path + ", which are not finite and ascending" +
+            fps};
   }
   if (!times.are_even) {
     return {"dropped: the uneven frame times of " + path + (has_rate ? "" : fps)};
+  }
+  if (times.are_equal) {
+    return {"dropped: the frame times of " + path + ", which are all " +
+            shortest_text(static_cast<float>(times.start)) + fps};
   }
   std::string list;
   if (times.start != 0.0) {

@@ -94,6 +94,9 @@ class EarClipper {
     max_comparisons_ = std::max(kComparisons, 64 * std::uint64_t{n});
   }
 
+  // Whether clip() has not had enough comparisons.
+  bool gave_up() const { return comparisons_ > max_comparisons_; }
+
   std::vector<PolygonTriangle> clip() {
     const auto n = static_cast<std::uint32_t>(corners_.size());
     std::vector<std::uint32_t> untested;
@@ -236,15 +239,21 @@ class EarClipper {
 
 }  // namespace
 
-std::vector<PolygonTriangle> split_polygon(std::span<const std::array<double, 3>> corners) {
+std::vector<PolygonTriangle> split_polygon(std::span<const std::array<double, 3>> corners,
+                                           bool* gave_up) {
   if (corners.size() < 4) return {};
   const auto flat = flatten(corners);
   if (!flat) return {};
   constexpr double kRounding = 0x1p-24;
   const double folded_by_fan = folded_area(*flat, fan_of(corners.size()));
   if (folded_by_fan <= kRounding * flat->twice_area) return {};
-  auto triangles = EarClipper(*flat).clip();
-  if (folded_area(*flat, triangles) < folded_by_fan) return triangles;
+  EarClipper clipper(*flat);
+  auto triangles = clipper.clip();
+  const double folded = folded_area(*flat, triangles);
+  if (gave_up != nullptr && clipper.gave_up() && folded > kRounding * flat->twice_area) {
+    *gave_up = true;
+  }
+  if (folded < folded_by_fan) return triangles;
   return {};
 }
 

@@ -21,6 +21,9 @@ using PolygonTriangle = std::array<std::uint32_t, 3>;
 //
 // The result is the same on every machine. Time: about n * log n for outlines as they occur,
 // never more than some 10^8 comparisons.
-std::vector<PolygonTriangle> split_polygon(std::span<const std::array<double, 3>> corners);
+//
+// gave_up: set to true if that many comparisons were not enough, and triangles fold.
+std::vector<PolygonTriangle> split_polygon(std::span<const std::array<double, 3>> corners,
+                                           bool* gave_up = nullptr);
 
 }  // namespace rlpc

@@ -1,7 +1,9 @@
 #include "encoder/input/formats/polygon_cuts.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <string>
 
 #include "encoder/input/formats/polygon.h"
 #include "encoder/input/mesh_reader.h"
@@ -58,6 +60,8 @@ bool cut_polygons(SingleMesh& mesh, const MeshLimit& limit) {
   if (!limit.cuts_polygons) return true;
   std::vector<std::array<double, 3>> corners;
   std::vector<std::uint32_t> split;
+  std::size_t num_folded = 0;
+  std::size_t max_corners = 0;
   for (const MeshPolygon& polygon : mesh.polygons) {
     // What splitting a polygon takes for each corner, with its result.
     constexpr std::uint64_t kBytes = 150;
@@ -69,10 +73,22 @@ bool cut_polygons(SingleMesh& mesh, const MeshLimit& limit) {
       corners.push_back({mesh.xyz[3 * v], mesh.xyz[3 * v + 1], mesh.xyz[3 * v + 2]});
     }
     split.clear();
-    for (const auto& triangle : split_polygon(corners)) {
+    bool gave_up = false;
+    for (const auto& triangle : split_polygon(corners, &gave_up)) {
       split.insert(split.end(), triangle.begin(), triangle.end());
     }
     if (!split.empty()) mesh.cuts.add(polygon, split);
+    if (gave_up) {
+      ++num_folded;
+      max_corners = std::max<std::size_t>(max_corners, corners.size());
+    }
+  }
+  if (num_folded > 0) {
+    mesh.notes.push_back(
+        std::to_string(num_folded) + (num_folded == 1 ? " polygon" : " polygons") +
+        " of up to " + std::to_string(max_corners) +
+        " corners would take too long to split: triangles fold over each other there; "
+        "triangulate the mesh before encoding");
   }
   mesh.cuts.apply(mesh.triangles);
   return true;

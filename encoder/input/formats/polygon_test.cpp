@@ -287,6 +287,22 @@ TEST(Polygon, CoversSpiralsAndCombsOfThousands) {
   expect_covered(spiral, random, "spiral");
 }
 
+// An outline that takes more comparisons than there may be is not folded silently.
+TEST(Polygon, SaysThatItGaveUp) {
+  // A comb of long teeth that lean over: the box of each is in the way of all others.
+  for (const int num_corners : {200, 20000}) {
+    std::vector<std::array<double, 3>> comb{{0, -10, 0}};
+    for (int i = 0; i < num_corners; ++i) {
+      const double tooth = i % 2 == 0 ? 0.0 : num_corners;
+      comb.push_back({i + tooth, tooth, 0.0});
+    }
+    comb.push_back({1.0 * num_corners, -10, 0});
+    bool gave_up = false;
+    split_polygon(comb, &gave_up);
+    EXPECT_EQ(gave_up, num_corners > 1000) << num_corners;
+  }
+}
+
 // As files have them: turned in space, with seven digits.
 TEST(Polygon, CoversOutlinesThatAreNotQuiteFlat) {
   Random random(8);

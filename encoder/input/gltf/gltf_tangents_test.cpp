@@ -128,5 +128,20 @@ TEST_F(TangentFiles, OtherTangentsAreNotedWhereThereIsRelief) {
   EXPECT_FALSE(is_noted(triangle({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, true)));
 }
 
+TEST_F(TangentFiles, OtherTangentsAreNotedWhereExtensionsNeedThem) {
+  const auto noted_with = [&](const char* extensions) {
+    GltfBuilder builder = triangle(kOther, false);
+    builder.json["materials"][0]["extensions"] = nlohmann::json::parse(extensions);
+    return is_noted(builder);
+  };
+  EXPECT_TRUE(noted_with(R"({"KHR_materials_anisotropy": {"anisotropyStrength": 0.6}})"));
+  EXPECT_TRUE(noted_with(
+      R"({"KHR_materials_anisotropy": {"anisotropyTexture": {"index": 0, "texCoord": 0}}})"));
+  EXPECT_TRUE(
+      noted_with(R"({"KHR_materials_clearcoat": {"clearcoatNormalTexture": {"index": 0}}})"));
+  EXPECT_FALSE(noted_with(R"({"KHR_materials_clearcoat": {"clearcoatFactor": 1}})"));
+  EXPECT_FALSE(noted_with(R"({"KHR_materials_clearcoat": 3})"));
+}
+
 }  // namespace
 }  // namespace rlpc

@@ -68,6 +68,7 @@ class LossFinder {
           key == "materials" || key == "textures" || key == "images" || key == "samplers";
       if (!is_kept) walk(key, value);
     }
+    add_asset();
     add_extras(root_, "the document");
     add_extensions(root_);
     for (const std::string& name : extensions_) found_.push_back("extension " + name);
@@ -139,8 +140,11 @@ class LossFinder {
       }
     }
     if (!names.empty()) {
+      const bool has_other_clips = elements(root_, "animations").size() > model_.clips.size();
       found_.push_back(counted(names.size(), "morph target", "morph targets") +
-                       " that no animation moves (" + joined(names) + ")");
+                       (has_other_clips ? " that the chosen animations do not move ("
+                                        : " that no animation moves (") +
+                       joined(names) + ")");
     }
     if (some_move) found_.emplace_back("morph targets (not their motion)");
   }
@@ -206,6 +210,21 @@ class LossFinder {
     }
   }
 
+  // Who made the file, under which terms.
+  void add_asset() {
+    const Json& asset = member(root_, "asset");
+    if (!asset.is_object()) return;
+    std::vector<std::string> names;
+    for (const auto& [key, unused] : asset.items()) {
+      // The generator is noted by itself: nearly every file has one.
+      static const std::set<std::string_view> kOthers{"version", "minVersion", "generator",
+                                                      "extras", "extensions"};
+      if (kOthers.contains(key)) continue;
+      names.push_back(key == "copyright" ? key : gltf_quoted(key));
+    }
+    if (!names.empty()) found_.push_back("asset information (" + joined(names) + ")");
+  }
+
   // Extensions and extras anywhere in a value. kind: the array of the document it is in.
   void walk(const std::string& kind, const Json& value) {
     std::vector<const Json*> open{&value};
@@ -228,17 +247,30 @@ class LossFinder {
     }
   }
 
-  void add_extensions(const Json& value) {
-    // Those that are read, named elsewhere, or without effect on what is read.
+  // Whether an extension is read, named elsewhere, or without effect on what is read.
+  bool is_named_elsewhere(const std::string& name) const {
     static const std::set<std::string_view> kKnown{
-        "KHR_mesh_quantization",     "KHR_lights_punctual",     "KHR_materials_variants",
-        "EXT_mesh_gpu_instancing",   "KHR_node_visibility",     "MSFT_lod",
-        "KHR_animation_pointer",     "EXT_meshopt_compression", "KHR_meshopt_compression",
-        "KHR_draco_mesh_compression"};
+        "KHR_mesh_quantization", "KHR_animation_pointer", "EXT_meshopt_compression",
+        "KHR_meshopt_compression", "KHR_draco_mesh_compression"};
+    if (kKnown.contains(name)) return true;
+    // These are named where the document has a list of them.
+    if (name == "KHR_lights_punctual" || name == "KHR_materials_variants") {
+      return !member(member(root_, "extensions"), name.c_str()).is_null();
+    }
+    // These are named where the document says that it uses them.
+    if (name != "EXT_mesh_gpu_instancing" && name != "KHR_node_visibility" &&
+        name != "MSFT_lod") {
+      return false;
+    }
+    const Json& used = elements(root_, "extensionsUsed");
+    return std::any_of(used.begin(), used.end(), [&](const Json& x) { return x == name; });
+  }
+
+  void add_extensions(const Json& value) {
     const Json& extensions = member(value, "extensions");
     if (!extensions.is_object()) return;
     for (const auto& [name, unused] : extensions.items()) {
-      if (!kKnown.contains(name)) extensions_.insert(gltf_quoted(name));
+      if (!is_named_elsewhere(name)) extensions_.insert(gltf_quoted(name));
     }
   }
 

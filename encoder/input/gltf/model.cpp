@@ -55,6 +55,13 @@ class ModelReader {
     note(num_without_triangles_, "point or line primitive");
     model_.equal_uv = drop_equal_uv(model_.geometries);
     if (!model_.equal_uv.empty()) model_.notes.push_back(equal_uv_note(model_.equal_uv));
+    std::uint64_t num_clamped = 0;
+    for (const GltfGeometry& geometry : model_.geometries) num_clamped += geometry.num_clamped;
+    if (num_clamped > 0) {
+      model_.notes.push_back("dropped: what " + to_string(num_clamped) +
+                             " numbers of colours have outside 0 to 1, to which they are "
+                             "clamped as glTF demands");
+    }
     TangentCount tangents;
     for (const GltfGeometry& geometry : model_.geometries) tangents.add(geometry.tangents);
     if (std::string text = tangent_note(tangents); !text.empty())
@@ -192,15 +199,32 @@ class ModelReader {
   std::uint64_t num_without_triangles_ = 0;
 };
 
-// The number of the texture coordinates of the normal map of each material; none: it has no
-// such map. Materials may be anything here: their readers check them.
+const nlohmann::json* find_member(const nlohmann::json* value, const char* key) {
+  if (value == nullptr || !value->is_object()) return nullptr;
+  const auto found = value->find(key);
+  return found == value->end() ? nullptr : &*found;
+}
+
+// What of a material needs tangents: its normal map; that of its clear coat; anisotropy, whose
+// direction is relative to them, with or without a texture. Null: nothing does.
+const nlohmann::json* relief_of(const nlohmann::json& material) {
+  if (const auto* const map = find_member(&material, "normalTexture")) return map;
+  const nlohmann::json* const extensions = find_member(&material, "extensions");
+  const auto* const coat = find_member(extensions, "KHR_materials_clearcoat");
+  if (const auto* const map = find_member(coat, "clearcoatNormalTexture")) return map;
+  const auto* const anisotropy = find_member(extensions, "KHR_materials_anisotropy");
+  const auto* const map = find_member(anisotropy, "anisotropyTexture");
+  return map != nullptr ? map : anisotropy;
+}
+
+// The number of the texture coordinates that tangents of each material belong to; none: it has
+// no use for them. Materials may be anything here: their readers check them.
 std::vector<std::optional<std::size_t>> relief_of_materials(const nlohmann::json& root,
                                                             std::size_t num_materials) {
   std::vector<std::optional<std::size_t>> relief(num_materials);
   for (std::size_t m = 0; m < num_materials; ++m) {
-    const nlohmann::json& material = root["materials"][m];
-    const auto map = material.find("normalTexture");
-    if (!material.is_object() || map == material.end()) continue;
+    const nlohmann::json* const map = relief_of(root["materials"][m]);
+    if (map == nullptr) continue;
     constexpr std::size_t kMostSets = 256;
     relief[m] = index_of(*map, "texCoord", kMostSets).value_or(0);
     if (!map->is_object() || !map->contains("extensions")) continue;
@@ -249,6 +273,13 @@ InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLi
     std::string list;
     for (const std::string& what : model.dropped) list += (list.empty() ? "" : ", ") + what;
     model.notes.insert(model.notes.begin(), "dropped: " + list);
+  }
+  if (const auto* const generator =
+          find_member(find_member(&*file->json, "asset"), "generator");
+      generator != nullptr && *generator != "rlpcdec") {
+    model.notes.push_back(
+        "the stream does not say which program wrote the file "
+        "(asset.generator)");
   }
   // The asset is another tree, and its text.
   memory.take("materials", file->document_bytes);

@@ -80,6 +80,13 @@ class GeometryReader {
     if (is_colour && accessor.normalized) {
       read.max_value = accessor.component == GltfComponent::kU8 ? 255 : 65535;
       for (float& x : read.values) x = std::round(x * static_cast<float>(read.max_value));
+    } else if (is_colour) {
+      // glTF 2.0, 3.7.2.1. Others would make the steps of all colours larger.
+      for (float& x : read.values) {
+        const float clamped = std::clamp(x, 0.0F, 1.0F);
+        geometry.num_clamped += clamped == x ? 0 : 1;
+        x = clamped;
+      }
     }
     geometry.attributes.push_back(std::move(read));
   }

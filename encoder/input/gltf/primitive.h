@@ -41,14 +41,15 @@ struct GltfGeometry {
     std::vector<float> values;    // [vertex][width]; of normalised integers, these
   };
   std::vector<Attribute> attributes;
-  TangentCount tangents;  // of primitives with a normal map
+  TangentCount tangents;          // of primitives whose material needs tangents
+  std::uint64_t num_clamped = 0;  // numbers of colours outside 0 to 1, which are clamped
 
   std::uint32_t num_vertices() const { return static_cast<std::uint32_t>(base.size() / 3); }
 };
 
 // num_joints: joints of the skin; 0: no skin, influences are not read. relief_uv: number of the
-// texture coordinates of the normal map; none: there is none. Joints and indices of the result
-// are in range. Complete only if there are no errors.
+// texture coordinates that a normal map, or what else needs tangents, uses; none: nothing does.
+// Joints and indices of the result are in range. Complete only if there are no errors.
 GltfGeometry read_gltf_geometry(const GltfPrimitive& primitive, std::size_t num_joints,
                                 std::optional<std::size_t> relief_uv, GltfValues& values,
                                 GltfErrors& errors);

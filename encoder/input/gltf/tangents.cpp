@@ -173,7 +173,8 @@ std::string tangent_note(const TangentCount& count) {
       "the tangents that are dropped differ from those of the texture coordinates "
       "by more than " +
       std::to_string(kTangentsApart) + " degrees at " + percent(count.apart, count.corners) +
-      " of the corners with normal maps, where relief will look different";
+      " of the corners with normal maps or anisotropy, where relief or shine will look "
+      "different";
   if (count.inverted > 0) {
     note += "; at " + percent(count.inverted, count.corners) +
             " they point the other way: dents become bumps";
