@@ -2,19 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kMostExamined = 4096;  // fixed: frames, for time
-constexpr double kShown = 0.125;               // fixed: of the largest volume; half of the size
+constexpr std::uint32_t kMostExamined = 4096;               // fixed: frames, for time
+constexpr std::size_t kMostVolumes = std::size_t{1} << 20;  // fixed: memory, and time
+constexpr double kShown = 0.125;  // fixed: of the largest volume; half of the size
 
 // The nodes that place vertices: those of instances without skin, and joints.
 std::vector<std::uint32_t> placing_nodes(const GltfModel& model) {
   std::vector<std::uint32_t> nodes;
+  std::vector<bool> is_taken(model.skins.size());  // many instances may have the same skin
   for (const GltfModel::Instance& instance : model.instances) {
     nodes.push_back(instance.node);
-    if (!instance.skin) continue;
+    if (!instance.skin || is_taken[*instance.skin]) continue;
+    is_taken[*instance.skin] = true;
     const auto& joints = model.skins[*instance.skin].joints;
     nodes.insert(nodes.end(), joints.begin(), joints.end());
   }
@@ -83,9 +87,12 @@ std::vector<std::uint32_t> spread_out(std::uint32_t num_frames, std::size_t coun
 
 SampledPoses sample_poses(const GltfModel& model, std::uint32_t num_frames, std::size_t most,
                           const std::function<GltfPose(std::uint32_t)>& pose_at) {
+  std::vector<std::uint32_t> nodes = placing_nodes(model);
+  const std::size_t most_frames =
+      std::clamp<std::size_t>(kMostVolumes / (nodes.size() + 1), 2, kMostExamined);
   const std::vector<std::uint32_t> examined =
-      spread_out(num_frames, std::min(num_frames, kMostExamined));
-  NodeVolumes volumes(placing_nodes(model), examined.size());
+      spread_out(num_frames, std::min<std::size_t>(num_frames, most_frames));
+  NodeVolumes volumes(std::move(nodes), examined.size());
   for (std::size_t i = 0; i < examined.size(); ++i) volumes.set(i, pose_at(examined[i]));
   SampledPoses sampled;
   for (const GltfModel::Instance& instance : model.instances) {
