@@ -14,18 +14,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-// A member of what may be no object.
-const Json& member(const Json& value, const char* key) {
-  static const Json kNone;
-  if (!value.is_object()) return kNone;
-  const auto found = value.find(key);
-  return found == value.end() ? kNone : *found;
-}
-
 // The elements of an array; none of anything else.
 const Json& elements(const Json& value, const char* key) {
   static const Json kNone = Json::array();
-  const Json& found = member(value, key);
+  const Json& found = gltf_member(value, key);
   return found.is_array() ? found : kNone;
 }
 
@@ -85,7 +77,7 @@ class LossFinder {
     std::size_t without_positions = 0;
     for (const Json& mesh : elements(root_, "meshes")) {
       for (const Json& primitive : elements(mesh, "primitives")) {
-        const Json& attributes = member(primitive, "attributes");
+        const Json& attributes = gltf_member(primitive, "attributes");
         if (!attributes.is_object()) continue;
         if (!attributes.contains("POSITION")) ++without_positions;
         for (const auto& [name, unused] : attributes.items()) {
@@ -162,7 +154,7 @@ class LossFinder {
   }
 
   std::string target_name(std::uint32_t mesh, std::size_t target) const {
-    const Json& names = elements(member(root_["meshes"][mesh], "extras"), "targetNames");
+    const Json& names = elements(gltf_member(root_["meshes"][mesh], "extras"), "targetNames");
     if (target < names.size() && names[target].is_string()) {
       const std::string name = names[target].get<std::string>();
       return gltf_quoted(name).size() == name.size() + 2 ? name : gltf_quoted(name);
@@ -195,12 +187,12 @@ class LossFinder {
     for (std::uint32_t n = 0; n < nodes.size() && n < model_.nodes.size(); ++n) {
       if (!model_.nodes[n].children.empty() || model_.nodes[n].mesh || joints.contains(n))
         continue;
-      const Json& parent_extensions = member(nodes[n], "extensions");
-      const bool is_light = !member(parent_extensions, "KHR_lights_punctual").is_null();
-      if (is_light || !member(nodes[n], "camera").is_null()) continue;
+      const Json& parent_extensions = gltf_member(nodes[n], "extensions");
+      const bool is_light = !gltf_member(parent_extensions, "KHR_lights_punctual").is_null();
+      if (is_light || !gltf_member(nodes[n], "camera").is_null()) continue;
       const auto parent = model_.scene.parent[n];
       if (parent && joints.contains(*parent)) continue;  // the end of a bone
-      const Json& name = member(nodes[n], "name");
+      const Json& name = gltf_member(nodes[n], "name");
       names.push_back(name.is_string() ? gltf_quoted(name.get<std::string>())
                                        : "number " + std::to_string(n));
     }
@@ -212,7 +204,7 @@ class LossFinder {
 
   // Who made the file, under which terms.
   void add_asset() {
-    const Json& asset = member(root_, "asset");
+    const Json& asset = gltf_member(root_, "asset");
     if (!asset.is_object()) return;
     std::vector<std::string> names;
     for (const auto& [key, unused] : asset.items()) {
@@ -255,7 +247,7 @@ class LossFinder {
     if (kKnown.contains(name)) return true;
     // These are named where the document has a list of them.
     if (name == "KHR_lights_punctual" || name == "KHR_materials_variants") {
-      return !member(member(root_, "extensions"), name.c_str()).is_null();
+      return !gltf_member(gltf_member(root_, "extensions"), name.c_str()).is_null();
     }
     // These are named where the document says that it uses them.
     if (name != "EXT_mesh_gpu_instancing" && name != "KHR_node_visibility" &&
@@ -267,7 +259,7 @@ class LossFinder {
   }
 
   void add_extensions(const Json& value) {
-    const Json& extensions = member(value, "extensions");
+    const Json& extensions = gltf_member(value, "extensions");
     if (!extensions.is_object()) return;
     for (const auto& [name, unused] : extensions.items()) {
       if (!is_named_elsewhere(name)) extensions_.insert(gltf_quoted(name));
@@ -275,7 +267,7 @@ class LossFinder {
   }
 
   void add_extras(const Json& value, const std::string& kind) {
-    const Json& extras = member(value, "extras");
+    const Json& extras = gltf_member(value, "extras");
     if (extras.is_null()) return;
     // Read: names of morph targets, and the frame rate that rlpcdec writes.
     const char* const read = kind == "meshes"  ? "targetNames"

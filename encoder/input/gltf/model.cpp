@@ -8,6 +8,7 @@
 
 #include "encoder/input/glb_asset.h"
 #include "encoder/input/gltf/asset.h"
+#include "encoder/input/gltf/document/json.h"
 #include "encoder/input/gltf/equal_uv.h"
 #include "encoder/input/gltf/losses.h"
 
@@ -199,22 +200,18 @@ class ModelReader {
   std::uint64_t num_without_triangles_ = 0;
 };
 
-const nlohmann::json* find_member(const nlohmann::json* value, const char* key) {
-  if (value == nullptr || !value->is_object()) return nullptr;
-  const auto found = value->find(key);
-  return found == value->end() ? nullptr : &*found;
-}
-
 // What of a material needs tangents: its normal map; that of its clear coat; anisotropy, whose
 // direction is relative to them, with or without a texture. Null: nothing does.
-const nlohmann::json* relief_of(const nlohmann::json& material) {
-  if (const auto* const map = find_member(&material, "normalTexture")) return map;
-  const nlohmann::json* const extensions = find_member(&material, "extensions");
-  const auto* const coat = find_member(extensions, "KHR_materials_clearcoat");
-  if (const auto* const map = find_member(coat, "clearcoatNormalTexture")) return map;
-  const auto* const anisotropy = find_member(extensions, "KHR_materials_anisotropy");
-  const auto* const map = find_member(anisotropy, "anisotropyTexture");
-  return map != nullptr ? map : anisotropy;
+const nlohmann::json& relief_of(const nlohmann::json& material) {
+  const auto& map = gltf_member(material, "normalTexture");
+  if (!map.is_null()) return map;
+  const auto& extensions = gltf_member(material, "extensions");
+  const auto& coat = gltf_member(extensions, "KHR_materials_clearcoat");
+  const auto& map_of_coat = gltf_member(coat, "clearcoatNormalTexture");
+  if (!map_of_coat.is_null()) return map_of_coat;
+  const auto& anisotropy = gltf_member(extensions, "KHR_materials_anisotropy");
+  const auto& its_map = gltf_member(anisotropy, "anisotropyTexture");
+  return its_map.is_null() ? anisotropy : its_map;
 }
 
 // The number of the texture coordinates that tangents of each material belong to; none: it has
@@ -223,14 +220,14 @@ std::vector<std::optional<std::size_t>> relief_of_materials(const nlohmann::json
                                                             std::size_t num_materials) {
   std::vector<std::optional<std::size_t>> relief(num_materials);
   for (std::size_t m = 0; m < num_materials; ++m) {
-    const nlohmann::json* const map = relief_of(root["materials"][m]);
-    if (map == nullptr) continue;
+    const nlohmann::json& map = relief_of(root["materials"][m]);
+    if (map.is_null()) continue;
     constexpr std::size_t kMostSets = 256;
-    relief[m] = index_of(*map, "texCoord", kMostSets).value_or(0);
-    if (!map->is_object() || !map->contains("extensions")) continue;
-    const nlohmann::json& extensions = (*map)["extensions"];
-    if (!extensions.is_object() || !extensions.contains("KHR_texture_transform")) continue;
-    const auto other = index_of(extensions["KHR_texture_transform"], "texCoord", kMostSets);
+    relief[m] = index_of(map, "texCoord", kMostSets).value_or(0);
+    const auto& transform =
+        gltf_member(gltf_member(map, "extensions"), "KHR_texture_transform");
+    if (transform.is_null()) continue;
+    const auto other = index_of(transform, "texCoord", kMostSets);
     if (other) relief[m] = *other;
   }
   return relief;
@@ -274,12 +271,10 @@ InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLi
     for (const std::string& what : model.dropped) list += (list.empty() ? "" : ", ") + what;
     model.notes.insert(model.notes.begin(), "dropped: " + list);
   }
-  if (const auto* const generator =
-          find_member(find_member(&*file->json, "asset"), "generator");
-      generator != nullptr && *generator != "rlpcdec") {
-    model.notes.push_back(
-        "the stream does not say which program wrote the file "
-        "(asset.generator)");
+  const auto& generator = gltf_member(gltf_member(*file->json, "asset"), "generator");
+  if (!generator.is_null() && generator != "rlpcdec") {
+    model.notes.emplace_back(
+        "the stream does not say which program wrote the file (asset.generator)");
   }
   // The asset is another tree, and its text.
   memory.take("materials", file->document_bytes);

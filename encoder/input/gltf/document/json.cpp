@@ -118,6 +118,13 @@ std::string GltfValue::found() const {
   return json_text(*json_);
 }
 
+const nlohmann::json& gltf_member(const nlohmann::json& value, const char* key) {
+  static const nlohmann::json kNone;
+  if (!value.is_object()) return kNone;
+  const auto found = value.find(key);
+  return found == value.end() ? kNone : *found;
+}
+
 std::string gltf_quoted(const std::string& text) {
   constexpr std::size_t kLongest = 60;
   const bool cut = text.size() > kLongest;

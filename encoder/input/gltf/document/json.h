@@ -80,6 +80,9 @@ class GltfValue {
   GltfErrors* errors_;
 };
 
+// A member of what may be no object, where that is not an error; null: there is none.
+const nlohmann::json& gltf_member(const nlohmann::json& value, const char* key);
+
 // In double quotes, as in JSON; long ones are shortened.
 std::string gltf_quoted(const std::string& text);
 
