@@ -72,9 +72,8 @@ bool GofBatch::use_last_resort() {
   return true;
 }
 
-bool GofBatch::choose_again() {
+void GofBatch::choose_again() {
   for (Gof& gof : gofs_) gof.coder.reset();
-  return true;
 }
 
 bool GofBatch::uses_earlier_models() const {

@@ -68,8 +68,8 @@ class GofBatch {
   // From now on, encodes all GOFs with the kind reserved for targets that the others miss.
   // False: there is no such kind.
   bool use_last_resort();
-  // Forgets what was chosen at earlier steps; the next one decides. Always true.
-  bool choose_again();
+  // Forgets what was chosen at earlier steps: the next one decides.
+  void choose_again();
   // Whether some spans use skinned models of earlier ones.
   bool uses_earlier_models() const;
   // From now on, each span has a skinned model of its own. False: so it was before.

@@ -19,11 +19,17 @@ class SpanBuffer final : public FrameSource {
     xyz_.reserve(3 * std::size_t{num_vertices} * num_frames);
   }
 
-  // A span that ends with the frames of another buffer.
-  explicit SpanBuffer(SpanBuffer&& other)
-      : FrameSource({other.num_vertices(), other.frames_added(), {}, {}}),
-        xyz_(std::move(other.xyz_)),
-        exact_(std::move(other.exact_)) {}
+  // The frames of a span that ends before its buffer is full, all that were added.
+  struct Frames {
+    std::uint32_t count = 0;
+    std::vector<float> xyz;
+    std::vector<double> exact;
+  };
+  SpanBuffer(std::uint32_t num_vertices, Frames frames)
+      : FrameSource({num_vertices, frames.count, {}, {}}),
+        xyz_(std::move(frames.xyz)),
+        exact_(std::move(frames.exact)) {}
+  Frames take() { return {frames_added(), std::move(xyz_), std::move(exact_)}; }
 
   // xyz and exact: as of FrameEncoder::add_frame().
   void add(std::span<const float> xyz, std::span<const double> exact) {

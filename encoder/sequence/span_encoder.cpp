@@ -231,8 +231,8 @@ InputResult<EncodeReport> SpanEncoder::finish() {
   if (failure_) return *failure_;
   if (auto error = check_count(format_, num_added_)) return fail(*error);
   if (buffer_) {  // the rest of an open-ended stream
-    SpanBuffer rest(std::move(*buffer_));
-    buffer_.emplace(std::move(rest));
+    SpanBuffer::Frames rest = buffer_->take();
+    buffer_.emplace(format_.num_vertices, std::move(rest));
     if (auto error = encode_span()) return fail(*error);
   }
   stream_->write_end(out_.collector());

@@ -38,8 +38,8 @@ class StreamVerifier {
 
   // Where originals do not stay until their frame can be decoded: compares the positions, in
   // decoded order, that the encoder expects of a frame with the original, as check_frame() does
-  // with decoded ones, and notes them;
-  // check_expected() then decodes all frames noted so far, and compares them with these.
+  // with decoded ones, and notes them; check_expected() then decodes all frames noted so far,
+  // and compares them with these.
   std::optional<InputError> expect(std::span<const std::int32_t> positions,
                                    std::span<const double> exact);
   std::optional<InputError> check_expected();

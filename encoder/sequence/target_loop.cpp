@@ -125,24 +125,28 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
 
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch) {
   auto best = search_steps(task, batch, 0);
-  for (const auto& change :
-       {&GofBatch::use_own_models, &GofBatch::choose_again, &GofBatch::use_last_resort}) {
-    if (!best || best->met || best->given_up) break;
-    TargetTask again = task;
-    if (change == &GofBatch::choose_again) {
-      // Clusters and components that were chosen at a fine step may need more than a low rate
-      // has at any step.
-      if (task.settings.target.kind != Target::kBpvf) continue;
-      again.first_step = best->step;
+  const auto is_missed = [&] { return best && !best->met && !best->given_up; };
+  const auto search_again = [&](const TargetTask& changed) {
+    auto other = search_steps(changed, batch, best->trials);
+    if (!other) {
+      best = std::move(other);
+      return;
     }
-    if (!(batch.*change)()) continue;
-    auto other = search_steps(again, batch, best->trials);
-    if (!other) return other;
     const std::uint32_t trials = other->trials;
     const bool closer = other->met || other->measured < best->measured;
     if (closer && fits_level(task, other->trial)) best = std::move(other);
     best->trials = trials;
+  };
+  if (is_missed() && batch.use_own_models()) search_again(task);
+  if (is_missed() && task.settings.target.kind == Target::kBpvf) {
+    // Clusters and components that were chosen at a fine step can need more bits than a low
+    // rate has, at any step.
+    batch.choose_again();
+    TargetTask from_there = task;
+    from_there.first_step = best->step;
+    search_again(from_there);
   }
+  if (is_missed() && batch.use_last_resort()) search_again(task);
   return best;
 }
 

@@ -38,7 +38,8 @@ struct TargetResult {
 };
 
 // Runs the search. If it misses the target, searches again without skinned models of earlier
-// spans, then with the last resort of the batch. Errors: those of the batch.
+// spans; then, for a rate, with what is chosen at the last step; then with the last resort of
+// the batch. Errors: those of the batch.
 InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch);
 
 // The first encoding of that search. Errors: those of the batch.
