@@ -65,10 +65,8 @@ class AssetRepair {
     std::vector<std::string> broken;
     for (auto& [key, member] : value.items()) {
       if (key == "extras") continue;
-      const bool is_reference =
-          (key.ends_with("Texture") || key.ends_with("texture")) && is_texture(key, member);
-      if (is_reference && !(member.is_object() && member.contains("index") &&
-                            is_index(member["index"], "textures"))) {
+      if (key.ends_with("Texture") && !(member.is_object() && member.contains("index") &&
+                                        is_index(member["index"], "textures"))) {
         broken.push_back(key);
       } else {
         repair_material(member, place + "." + key);
@@ -78,11 +76,6 @@ class AssetRepair {
       value.erase(key);
       tell(place + "." + key);
     }
-  }
-
-  // Whether a member is a reference, or stands where one must be.
-  static bool is_texture(const std::string& key, const GltfJson& member) {
-    return !member.is_object() || member.contains("index") || key == "baseColorTexture";
   }
 
   GltfJson& root_;

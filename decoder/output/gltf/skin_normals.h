@@ -30,7 +30,7 @@ struct SkinNormals {
 
 // Which vertices of the stream have normals that joints alone may not turn as the surface does.
 struct NormalVertices {
-  std::vector<bool> is_moving;  // normals may move beside the joints
+  std::vector<bool> is_moving;  // normals may need targets
   std::vector<bool> is_bent;  // several joints move the triangles around it; then it moves, too
 };
 
