@@ -48,9 +48,8 @@ std::optional<std::string> normal_warning(const AttributeReport& normals) {
   if (worst.mean < kFarOff) return std::nullopt;
   return "normals are off by " + degrees(worst.mean) + " degrees on average in frame " +
          std::to_string(worst.frame) +
-         ": shading may differ there; the normals of INPUT may move otherwise than its "
-         "surface, "
-         "or parts may be thinner than the errors of positions (try a higher --quality)";
+         ": shading may differ there. Normals of INPUT may not turn with its surface, or parts "
+         "may be thinner than the errors of positions (try a higher --quality)";
 }
 
 }  // namespace rlpc

@@ -292,7 +292,7 @@ export class Playback<F = Frame> {
   seekSeconds(seconds: number): void;
   /** Ends all requests. */
   cancel(): void;
-  /** Lets time pass; below 0, none does. Returns what is to be shown now, if that is new; without a frame if it
-   * cannot be decoded. */
+  /** Lets time pass; below 0, none does. Returns what is to be shown now, if that is new; without a
+   * frame if it cannot be decoded. */
   tick(seconds: number): { index: number; frame?: F } | undefined;
 }

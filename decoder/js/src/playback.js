@@ -280,7 +280,8 @@ export class Playback {
 
   /** Whether the step is the first one of another turn. */
   get isAtTurn() {
-    return this.loop !== "once" && this.current % (this.loop === "repeat" ? this.count : this.count - 1) === 0;
+    if (this.loop === "once") return false;
+    return this.current % (this.loop === "repeat" ? this.count : this.count - 1) === 0;
   }
 
   take(step) {

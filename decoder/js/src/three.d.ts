@@ -100,9 +100,8 @@ export class RLPCMesh extends Mesh<BufferGeometry, Material | Material[], RLPCMe
   /** Back to the start. */
   stop(): this;
   /** To be called for each picture, with the seconds since the last, a finite number; below 0, no time
-   * passes. Actions of an AnimationMixer do
-   * not need it. With a camera, it also calls selectLevel(). Returns whether something else is shown
-   * than before. */
+   * passes. Actions of an AnimationMixer do not need it. With a camera, it also calls selectLevel().
+   * Returns whether something else is shown than before. */
   update(delta: number, camera?: Camera): boolean;
   /** Resolves once what is wanted now is shown, by actions of an AnimationMixer or by `time`. Rejects
    * with an AbortError after dispose(). */

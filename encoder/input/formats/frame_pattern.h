@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// The files among `names`, in `folder`, that a pattern selects, with their extension in upper
+// The files among `names`, those in the folder of a pattern, that it selects, with their extension in upper
 // or lower case. "%d" stands for whole numbers without padding, "%04d" or "####" for those
 // padded to four characters (any width), with or without sign, without gaps; "%g" stands for
 // every number, with or without sign, fraction and padding. A note tells of files that are left

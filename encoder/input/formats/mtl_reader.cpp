@@ -147,10 +147,10 @@ class MtlReader {
 
   void finish(Material& material) {
     Mtl& mtl = material.mtl;
-    if (material.shine_roughness && mtl.roughness) drop("Ns beside Pr");
+    if (material.shine_roughness && mtl.roughness) drop("Ns where Pr is given");
     if (!mtl.roughness) mtl.roughness = material.shine_roughness;
     const bool is_white = !mtl.base || *mtl.base == MtlColour{1.0, 1.0, 1.0};
-    if (!is_white && !mtl.base_image.name.empty()) drop("Kd beside map_Kd");
+    if (!is_white && !mtl.base_image.name.empty()) drop("Kd where map_Kd is given");
   }
 
   std::string dropped_text() const {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 
+#include "common/io/messages.h"
 #include "encoder/input/formats/polygon.h"
 #include "encoder/input/mesh_reader.h"
 
@@ -85,8 +86,7 @@ bool cut_polygons(SingleMesh& mesh, const MeshLimit& limit) {
   }
   if (num_folded > 0) {
     mesh.notes.push_back(
-        std::to_string(num_folded) + (num_folded == 1 ? " polygon" : " polygons") +
-        " of up to " + std::to_string(max_corners) +
+        count_text(num_folded, "polygon") + " of up to " + std::to_string(max_corners) +
         " corners would take too long to split: triangles fold over each other there; "
         "triangulate the mesh before encoding");
   }

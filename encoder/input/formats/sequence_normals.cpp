@@ -31,8 +31,8 @@ std::size_t max_frames(std::size_t num_corners, std::uint64_t max_memory_bytes) 
   constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 27;    // fixed: memory
   constexpr std::uint64_t kPart = 64;                            // fixed: of the limit
   constexpr std::uint64_t kMaxCorners = std::uint64_t{1} << 20;  // fixed: time, of all frames
-  constexpr std::uint64_t kMin = 15;  // fixed: as many as of glTF, where memory allows
-  constexpr std::uint64_t kMax = 255;
+  constexpr std::uint64_t kMin = 15;   // fixed: as many as of glTF, where memory allows
+  constexpr std::uint64_t kMax = 255;  // fixed: time
   const std::uint64_t bytes = std::min(kMaxBytes, max_memory_bytes / kPart);
   const std::uint64_t fit = bytes / (sizeof(Normal) * num_corners);
   return std::min(fit, std::clamp<std::uint64_t>(kMaxCorners / num_corners, kMin, kMax));
