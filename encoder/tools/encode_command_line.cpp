@@ -51,7 +51,8 @@ Files are frames in the order of the one number in which their names differ:
 fraction (t=0.041667) or a counter (v003.0995), whichever gives equal steps.
 Names that can be read in two orders are an error, and so are names that do not
 fit, such as that of a rest pose; a pattern chooses. A hyphen after a word is a
-separator before whole numbers and times from 0 on (walk-1, walk-0.04). Polygons are split into triangles as in the first frame.
+separator before whole numbers and times from 0 on (walk-1, walk-0.04).
+Polygons are split into triangles as in the first frame.
 
 The format is taken from the extension, otherwise detected from the contents.
 
