@@ -114,7 +114,8 @@ TEST_F(LossesTest, NamesParametersOfMaterialsThatStreamsHaveNot) {
                                        "newmtl spare\nKd 0 0 1\nwhatever 1\n");
   EXPECT_EQ(notes,
             "dropped: parameters of materials (Ks, Ka, illum, Ni, Tf, sharpness, Ps, Pc, Pcr, "
-            "aniso, anisor, thing, Ns where Pr is given), 1 material that no face uses (\"spare\")\n");
+            "aniso, anisor, thing, Ns where Pr is given), 1 material that no face uses "
+            "(\"spare\")\n");
   EXPECT_EQ(notes_with("newmtl a\nKd 1 0 2\nd -halo 0.5\n"),
             "dropped: parameters of materials (Kd outside 0 to 1, d)\n");
   // Values that say nothing, and those that are kept.

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "encoder/input/formats/polygon_cuts.h"
 #include "encoder/input/frame_source.h"
+#include "encoder/input/polygons/polygon_cuts.h"
 
 namespace rlpc {
 

@@ -130,8 +130,13 @@ ROOMS = {
     "encoder/input": {"common", "common/attributes/attribute_set.h", "common/io", "common/json",
                       "common/mesh",
                       "common/syntax/stream_format.h",
-                      "encoder/input/formats", "encoder/input/gltf"},
+                      "encoder/input/formats", "encoder/input/gltf", "encoder/input/polygons"},
+    # The order of frames, by the names of their files.
+    "encoder/input/names": {"common/io", "encoder/input/frame_source.h"},
+    # Polygons as triangles.
+    "encoder/input/polygons": {"common/io", "common/mesh", "encoder/input/mesh_reader.h"},
     "encoder/input/formats": {"common", "common/io", "common/mesh", "encoder/input",
+                              "encoder/input/names", "encoder/input/polygons",
                               "encoder/math/det_math.h"},
     "encoder/input/gltf/document": {"common", "common/io", "common/json", "common/mesh", "encoder/input"},
     "encoder/input/gltf": {"common", "common/io", "common/json", "common/mesh", "common/syntax/sequence_header.h",

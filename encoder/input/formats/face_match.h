@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/mesh/mesh.h"
-#include "encoder/input/formats/polygon_cuts.h"
+#include "encoder/input/polygons/polygon_cuts.h"
 
 namespace rlpc {
 

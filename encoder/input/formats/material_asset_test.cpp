@@ -77,8 +77,8 @@ TEST_F(MaterialAssetTest, ImagesAreCarriedOnce) {
   const auto made = make({"a", "b"},
                          "newmtl a\nKd 0.2 0.2 0.2\nmap_Kd -s 1 1 1 maps\\skin.png\n"
                          "norm bumps.jpg\nnewmtl b\nmap_Ke maps\\skin.png\n");
-  EXPECT_EQ(made.notes,
-            (std::vector<std::string>{"dropped: parameters of materials (Kd where map_Kd is given)"}));
+  EXPECT_EQ(made.notes, (std::vector<std::string>{
+                            "dropped: parameters of materials (Kd where map_Kd is given)"}));
   EXPECT_EQ(made.files.size(), 2U);
   const Json root = json_of(made.glb);
   EXPECT_EQ(root["images"].size(), 2U);

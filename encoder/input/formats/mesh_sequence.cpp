@@ -12,13 +12,13 @@
 #include <system_error>
 #include <utility>
 
-#include "encoder/input/formats/frame_pattern.h"
 #include "encoder/input/formats/material_files.h"
 #include "encoder/input/formats/sequence_files.h"
 #include "encoder/input/formats/sequence_normals.h"
 #include "encoder/input/input_file.h"
 #include "encoder/input/input_format.h"
 #include "encoder/input/mesh_reader.h"
+#include "encoder/input/names/frame_pattern.h"
 
 namespace rlpc {
 

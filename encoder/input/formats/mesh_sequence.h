@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "encoder/input/formats/frame_names.h"
 #include "encoder/input/frame_source.h"
+#include "encoder/input/names/frame_names.h"
 
 namespace rlpc {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "encoder/input/formats/polygon_cuts.h"
 #include "encoder/input/mesh_reader.h"
+#include "encoder/input/polygons/polygon_cuts.h"
 
 namespace rlpc {
 

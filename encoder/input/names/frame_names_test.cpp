@@ -1,4 +1,4 @@
-#include "encoder/input/formats/frame_names.h"
+#include "encoder/input/names/frame_names.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "encoder/input/formats/frame_pattern.h"
+#include "encoder/input/names/frame_pattern.h"
 
 namespace rlpc {
 namespace {

@@ -1,4 +1,4 @@
-#include "encoder/input/formats/name_number.h"
+#include "encoder/input/names/name_number.h"
 
 #include <algorithm>
 #include <charconv>

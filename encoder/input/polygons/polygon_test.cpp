@@ -1,4 +1,4 @@
-#include "encoder/input/formats/polygon.h"
+#include "encoder/input/polygons/polygon.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "encoder/input/formats/name_number.h"
+#include "encoder/input/names/name_number.h"
 
 namespace rlpc {
 

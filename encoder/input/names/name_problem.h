@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "encoder/input/formats/name_order.h"
 #include "encoder/input/frame_source.h"
+#include "encoder/input/names/name_order.h"
 
 namespace rlpc {
 

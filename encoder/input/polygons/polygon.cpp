@@ -1,11 +1,11 @@
-#include "encoder/input/formats/polygon.h"
+#include "encoder/input/polygons/polygon.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
 
-#include "encoder/input/formats/point_grid.h"
+#include "encoder/input/polygons/point_grid.h"
 
 namespace rlpc {
 

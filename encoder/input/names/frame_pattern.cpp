@@ -1,4 +1,4 @@
-#include "encoder/input/formats/frame_pattern.h"
+#include "encoder/input/names/frame_pattern.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 #include "common/io/messages.h"
 #include "common/io/numbered_name.h"
-#include "encoder/input/formats/name_number.h"
-#include "encoder/input/formats/name_problem.h"
+#include "encoder/input/names/name_number.h"
+#include "encoder/input/names/name_problem.h"
 
 namespace rlpc {
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "encoder/input/formats/frame_names.h"
-#include "encoder/input/formats/frame_pattern.h"
+#include "encoder/input/names/frame_names.h"
+#include "encoder/input/names/frame_pattern.h"
 
 namespace rlpc {
 namespace {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "encoder/input/formats/frame_files.h"
 #include "encoder/input/frame_source.h"
+#include "encoder/input/names/frame_files.h"
 
 namespace rlpc {
 

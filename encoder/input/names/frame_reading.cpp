@@ -1,10 +1,10 @@
-#include "encoder/input/formats/frame_reading.h"
+#include "encoder/input/names/frame_reading.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
-#include "encoder/input/formats/frame_steps.h"
+#include "encoder/input/names/frame_steps.h"
 
 namespace rlpc {
 

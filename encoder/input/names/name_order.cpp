@@ -1,4 +1,4 @@
-#include "encoder/input/formats/name_order.h"
+#include "encoder/input/names/name_order.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "encoder/input/formats/frame_steps.h"
+#include "encoder/input/names/frame_steps.h"
 
 namespace rlpc {
 

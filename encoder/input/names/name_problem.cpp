@@ -1,4 +1,4 @@
-#include "encoder/input/formats/name_problem.h"
+#include "encoder/input/names/name_problem.h"
 
 #include <algorithm>
 #include <filesystem>

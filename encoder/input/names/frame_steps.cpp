@@ -1,4 +1,4 @@
-#include "encoder/input/formats/frame_steps.h"
+#include "encoder/input/names/frame_steps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "encoder/input/formats/frame_files.h"
+#include "encoder/input/names/frame_files.h"
 
 #include <cmath>
 #include <cstdio>
 
-#include "encoder/input/formats/frame_steps.h"
+#include "encoder/input/names/frame_steps.h"
 
 namespace rlpc {
 

@@ -1,4 +1,4 @@
-#include "encoder/input/formats/polygon_cuts.h"
+#include "encoder/input/polygons/polygon_cuts.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <string>
 
 #include "common/io/messages.h"
-#include "encoder/input/formats/polygon.h"
 #include "encoder/input/mesh_reader.h"
+#include "encoder/input/polygons/polygon.h"
 
 namespace rlpc {
 

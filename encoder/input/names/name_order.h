@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "encoder/input/formats/frame_reading.h"
+#include "encoder/input/names/frame_reading.h"
 
 namespace rlpc {
 

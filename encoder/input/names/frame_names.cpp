@@ -1,13 +1,13 @@
-#include "encoder/input/formats/frame_names.h"
+#include "encoder/input/names/frame_names.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <utility>
 
-#include "encoder/input/formats/name_number.h"
-#include "encoder/input/formats/name_order.h"
-#include "encoder/input/formats/name_problem.h"
+#include "encoder/input/names/name_number.h"
+#include "encoder/input/names/name_order.h"
+#include "encoder/input/names/name_problem.h"
 
 namespace rlpc {
 
