@@ -20,7 +20,9 @@ constexpr std::uint32_t kSmoothingBits = 10;  // fixed: what smoothing is fitted
 // one; at a KG error of 0.1 %, normals of triangles are off by as much (README).
 constexpr double kServes = 1.0;
 // fixed: half of that; by how much (RMS) normals may be worse than the best way to code them.
-// Those that are not stored save a sixth to a half of the bytes of normals.
+// On q-character, robot, q-spider and cesium-man, normals take 19 to 31 % more bytes at half of
+// it, and are off by 0.03 to 0.07 degrees less; 13 to 33 % fewer bytes at double, and by 0.12
+// to 0.26 degrees more.
 constexpr double kLost = kServes / 2;
 // fixed: degrees; single normals that gain more than this are stored in any case
 constexpr double kMuchBetter = 10.0;
