@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/attributes/recon/attribute_recon.h"
-#include "common/bitstream/crc32.h"
-#include "common/owned.h"
+#include "common/codec/attributes/recon/attribute_recon.h"
+#include "common/codec/bits/crc32.h"
+#include "common/memory/owned.h"
+#include "decoder/codec/parse/attributes/parse_attributes.h"
+#include "decoder/codec/parse/sequence/parse_asset.h"
 #include "decoder/decoder_impl.h"
-#include "decoder/parse/attributes/parse_attributes.h"
-#include "decoder/parse/sequence/parse_asset.h"
 
 namespace rlpc {
 

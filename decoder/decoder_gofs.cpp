@@ -3,7 +3,7 @@
 #include <cassert>
 #include <utility>
 
-#include "common/owned.h"
+#include "common/memory/owned.h"
 #include "decoder/decoder_impl.h"
 
 namespace rlpc {

@@ -8,15 +8,15 @@
 #include <span>
 #include <utility>
 
-#include "common/owned.h"
+#include "common/memory/owned.h"
 #include "common/parallel/for_each.h"
-#include "decoder/recon/coarse_output.h"
-#include "decoder/recon/frame_band.h"
-#include "decoder/recon/gof_cache.h"
-#include "decoder/recon/live_gof.h"
-#include "decoder/recon/prefetch.h"
+#include "decoder/codec/gofs/coarse_output.h"
+#include "decoder/codec/gofs/frame_band.h"
+#include "decoder/codec/gofs/gof_cache.h"
+#include "decoder/codec/gofs/live_gof.h"
+#include "decoder/codec/gofs/prefetch.h"
+#include "decoder/codec/units/stream_reader.h"
 #include "decoder/rlpc_decoder.h"
-#include "decoder/stream/stream_reader.h"
 
 namespace rlpc {
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <utility>
 
-#include "common/io/bounded_input.h"
-#include "common/syntax/stream_format.h"
+#include "common/codec/syntax/stream_format.h"
+#include "common/files/bounded_input.h"
 
 namespace rlpc {
 namespace {

@@ -6,12 +6,10 @@
 #include <string>
 
 #include "common/result.h"
-#include "decoder/stream/byte_source.h"
+#include "decoder/codec/options.h"
+#include "decoder/codec/units/byte_source.h"
 
 namespace rlpc {
-
-// The default memory limit of DecodeLimits.
-inline constexpr std::uint64_t kUsualMemoryBytes = std::uint64_t{1} << 32;
 
 // Reads from a file as needed. A pipe or a device is buffered: of a stream of version 1.2, what
 // has been needed so far; others are read to their end, unless their beginning shows that they

@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "common/c_api/rlpc_status.h"
-#include "common/owned.h"
+#include "common/memory/owned.h"
 
 namespace rlpc {
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "common/owned.h"
+#include "common/memory/owned.h"
 
 namespace rlpc {
 namespace {

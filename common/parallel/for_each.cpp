@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "common/owned.h"
+#include "common/memory/owned.h"
 
 namespace rlpc {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "common/owned.h"
+#include "common/memory/owned.h"
 
 namespace rlpc {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "common/mesh/corners.h"
-#include "common/mesh/mesh.h"
+#include "common/codec/mesh/corners.h"
+#include "common/codec/mesh/mesh.h"
 
 namespace rlpc {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "common/bitstream/trace.h"
+#include "common/codec/bits/trace.h"
 
 namespace rlpc {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/frame_gof/frame_gof.h"
-#include "common/mesh/coded_mesh.h"
+#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/mesh/coded_mesh.h"
 
 namespace rlpc {
 

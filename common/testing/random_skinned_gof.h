@@ -7,13 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include "common/bitstream/residual_models.h"
-#include "common/cluster_gof/cluster_gof.h"
-#include "common/mesh/coded_mesh.h"
-#include "common/rest/counterparts.h"
-#include "common/skinned_gof/influences.h"
-#include "common/skinned_gof/skinned_gof.h"
-#include "common/syntax/sequence_header.h"
+#include "common/codec/bits/residual_models.h"
+#include "common/codec/kinds/cluster/cluster_gof.h"
+#include "common/codec/kinds/skinned/influences.h"
+#include "common/codec/kinds/skinned/skinned_gof.h"
+#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/rest/counterparts.h"
+#include "common/codec/syntax/sequence_header.h"
 
 namespace rlpc {
 

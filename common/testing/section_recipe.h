@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/bitstream/bit_model.h"
-#include "common/bitstream/range_encoder.h"
-#include "common/bitstream/residual_models.h"
-#include "common/int_math.h"
+#include "common/codec/bits/bit_model.h"
+#include "common/codec/bits/int_math.h"
+#include "common/codec/bits/range_encoder.h"
+#include "common/codec/bits/residual_models.h"
 
 namespace rlpc {
 

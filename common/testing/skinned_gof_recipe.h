@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "common/bitstream/bit_writer.h"
-#include "common/mesh/coded_mesh.h"
-#include "common/skinned_gof/slice_models.h"
+#include "common/codec/bits/bit_writer.h"
+#include "common/codec/kinds/skinned/slice_models.h"
+#include "common/codec/mesh/coded_mesh.h"
 #include "common/testing/section_recipe.h"
 
 namespace rlpc {

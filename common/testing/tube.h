@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/mesh/mesh.h"
+#include "common/codec/mesh/mesh.h"
 
 namespace rlpc {
 

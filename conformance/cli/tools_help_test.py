@@ -6,12 +6,12 @@ import re
 from tools_testing import ROOT, ToolsTest, main
 
 LINES, COLUMNS = 40, 80
-SOURCES = {"rlpcenc": ("encoder/tools/encode_command_line.cpp",
-                       "encoder/tools/method_options.cpp"),
-           "rlpcdec": ("decoder/tools/decode_command_line.cpp",),
-           "rlpcinfo": ("decoder/tools/rlpcinfo.cpp",),
+SOURCES = {"rlpcenc": ("encoder/programs/rlpcenc/encode_command_line.cpp",
+                       "encoder/programs/rlpcenc/method_options.cpp"),
+           "rlpcdec": ("decoder/programs/rlpcdec/decode_command_line.cpp",),
+           "rlpcinfo": ("decoder/programs/rlpcinfo/rlpcinfo.cpp",),
            "rlpcval": ("conformance/rlpcval/rlpcval.cpp",),
-           "rlpccmp": ("conformance/tools/rlpccmp.cpp",)}
+           "rlpccmp": ("conformance/rlpccmp/rlpccmp.cpp",)}
 # Text that CLI11 adds for types, validators, defaults and other options.
 NOISE = re.compile(r"TEXT|FLOAT|INT\b|REQUIRED|Excludes|Needs|:FILE|:SIZE|:\{|\[\d|[A-Z]=|\bEnv:")
 # Option names at the beginning of a string literal, including options that a function adds.

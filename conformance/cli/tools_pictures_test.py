@@ -249,7 +249,7 @@ class Pictures(CutTest):
         self.assertEqual(self.files(), before)
 
     def test_partitions_side_by_side(self):
-        script = ROOT / "scripts" / "figures" / "draw_partitions.py"
+        script = ROOT / "scripts" / "studies" / "figures" / "draw_partitions.py"
         command = [script, "--bin", Tools.folder, "--name", "robot_arm", "-o",
                    self.path("new/figure.svg"), "--clusters"]
         subprocess.run([*command, "6"], check=True)

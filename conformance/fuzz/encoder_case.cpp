@@ -7,9 +7,9 @@
 #include <random>
 #include <utility>
 
-#include "common/syntax/sequence_header.h"
+#include "common/codec/syntax/sequence_header.h"
 #include "common/testing/fuzz_input.h"
-#include "encoder/sequence/check_settings.h"
+#include "encoder/codec/sequence/check_settings.h"
 
 namespace rlpc {
 namespace {

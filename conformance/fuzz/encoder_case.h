@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/mesh.h"
+#include "common/codec/mesh/mesh.h"
 #include "encoder/c_api/rlpc_encode.h"
 #include "encoder/rlpc_encoder.h"
 

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "conformance/rlpcval/validator.h"
-#include "conformance/roundtrip/small_animation.h"
+#include "conformance/testing/small_animation.h"
 #include "decoder/c_api/rlpc_decode.h"
 
 namespace rlpc {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "encoder/frame_encoder.h"
-#include "encoder/input/frame_source.h"
+#include "encoder/meshes/frame_source.h"
 #include "encoder/rlpc_encoder.h"
 
 namespace rlpc {

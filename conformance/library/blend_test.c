@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "conformance/library/c_testing.h"
+#include "conformance/testing/c_testing.h"
 #include "decoder/c_api/rlpc_decode.h"
 #include "encoder/c_api/rlpc_encode.h"
 

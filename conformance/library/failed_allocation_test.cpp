@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "conformance/library/waving_strip.h"
-#include "conformance/roundtrip/count_memory.h"
+#include "conformance/testing/count_memory.h"
+#include "conformance/testing/waving_strip.h"
 #include "decoder/c_api/rlpc_decode.h"
 
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/library/waving_strip.h"
+#include "conformance/testing/waving_strip.h"
 #include "decoder/c_api/rlpc_attributes.h"
 #include "decoder/c_api/rlpc_decode.h"
 

@@ -3,7 +3,7 @@
 #include <limits>
 #include <string>
 
-#include "common/syntax/stream_format.h"
+#include "common/codec/syntax/stream_format.h"
 #include "common/verify/stream_rules.h"
 #include "conformance/rlpcval/rule_explanations.h"
 #include "conformance/rlpcval/validator.h"

@@ -11,17 +11,17 @@
 #include <utility>
 #include <vector>
 
-#include "common/io/interrupts.h"
-#include "common/io/messages.h"
-#include "common/io/progress_bar.h"
-#include "common/io/standard_output.h"
+#include "common/cli/command_line.h"
+#include "common/files/interrupts.h"
+#include "common/files/messages.h"
+#include "common/files/progress_bar.h"
+#include "common/files/standard_output.h"
 #include "common/json/json.h"
-#include "common/tools/command_line.h"
 #include "conformance/rlpcval/rlpcval_report.h"
 #include "conformance/rlpcval/rule_explanations.h"
 #include "conformance/rlpcval/validator.h"
 #include "decoder/describe_error.h"
-#include "decoder/tools/exit_code.h"
+#include "decoder/programs/exit_code.h"
 
 namespace {
 

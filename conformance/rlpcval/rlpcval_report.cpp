@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "common/io/messages.h"
-#include "common/syntax/stream_format.h"
+#include "common/codec/syntax/stream_format.h"
+#include "common/files/messages.h"
 #include "conformance/rlpcval/rule_explanations.h"
 #include "decoder/describe_error.h"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "common/syntax/stream_format.h"
+#include "common/codec/syntax/stream_format.h"
 #include "conformance/rlpcval/validator_stream.h"
 
 namespace rlpc {

@@ -19,10 +19,10 @@
 #include <string>
 #include <vector>
 
+#include "common/codec/syntax/sequence_header.h"
 #include "common/result.h"
-#include "common/syntax/sequence_header.h"
+#include "decoder/codec/units/byte_source.h"
 #include "decoder/rlpc_decoder.h"
-#include "decoder/stream/byte_source.h"
 
 namespace rlpc {
 

@@ -1,9 +1,9 @@
 // Assets (7.16). Decoding positions skips them, so that no finding stops a decoder.
 #include <string>
 
-#include "common/io/binary_numbers.h"
+#include "common/files/binary_numbers.h"
 #include "conformance/rlpcval/validator_stream.h"
-#include "decoder/parse/sequence/parse_asset.h"
+#include "decoder/codec/parse/sequence/parse_asset.h"
 
 namespace rlpc {
 namespace {

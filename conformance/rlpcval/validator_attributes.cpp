@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "common/attributes/attribute_set.h"
-#include "common/bitstream/crc32.h"
-#include "common/mesh/clip.h"
+#include "common/codec/attributes/attribute_set.h"
+#include "common/codec/bits/crc32.h"
+#include "common/codec/mesh/clip.h"
 #include "conformance/rlpcval/validator_stream.h"
-#include "decoder/parse/attributes/parse_attributes.h"
-#include "decoder/recon/gof_recon.h"
+#include "decoder/codec/gofs/gof_recon.h"
+#include "decoder/codec/parse/attributes/parse_attributes.h"
 
 namespace rlpc {
 

@@ -1,6 +1,6 @@
 #include "conformance/rlpcval/validator_checks.h"
 
-#include "common/rest/rest_shape.h"
+#include "common/codec/rest/rest_shape.h"
 
 namespace rlpc {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "conformance/rlpcval/validator.h"
-#include "conformance/roundtrip/model_animation.h"
+#include "conformance/testing/model_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

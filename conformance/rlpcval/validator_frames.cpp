@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "common/frame_gof/frame_gof.h"
+#include "common/codec/kinds/inter/frame_gof.h"
 #include "conformance/rlpcval/validator_checks.h"
 
 namespace rlpc {

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "common/bitstream/crc32.h"
-#include "common/syntax/stream_format.h"
+#include "common/codec/bits/crc32.h"
+#include "common/codec/syntax/stream_format.h"
 #include "conformance/rlpcval/validator.h"
 #include "decoder/rlpc_decoder.h"
 

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "common/skinned_gof/recon/skinned_recon.h"
+#include "common/codec/kinds/skinned/recon/skinned_recon.h"
 
 namespace rlpc {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include "common/skinned_gof/model_slots.h"
-#include "common/syntax/access_unit.h"
-#include "common/syntax/stream_context.h"
+#include "common/codec/kinds/access_unit.h"
+#include "common/codec/kinds/skinned/model_slots.h"
+#include "common/codec/syntax/stream_context.h"
 #include "conformance/rlpcval/validator_findings.h"
 
 namespace rlpc {

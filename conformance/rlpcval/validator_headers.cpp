@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "common/cluster_gof/cluster_gof.h"
-#include "common/skinned_gof/skinned_gof.h"
+#include "common/codec/kinds/cluster/cluster_gof.h"
+#include "common/codec/kinds/skinned/skinned_gof.h"
 #include "conformance/rlpcval/validator_checks.h"
 #include "conformance/rlpcval/validator_frames.h"
 

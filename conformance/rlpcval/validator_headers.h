@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
-#include "common/syntax/gof_header.h"
-#include "common/syntax/sequence_header.h"
+#include "common/codec/syntax/gof_header.h"
+#include "common/codec/syntax/sequence_header.h"
 #include "conformance/rlpcval/validator_elements.h"
 #include "conformance/rlpcval/validator_models.h"
-#include "decoder/parse/sequence/parse_gof_index.h"
-#include "decoder/parse/sequence/parse_sequence_header.h"
+#include "decoder/codec/parse/sequence/parse_gof_index.h"
+#include "decoder/codec/parse/sequence/parse_sequence_header.h"
 
 namespace rlpc {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "common/skinned_gof/model_slots.h"
-#include "common/skinned_gof/skinned_gof.h"
+#include "common/codec/kinds/skinned/model_slots.h"
+#include "common/codec/kinds/skinned/skinned_gof.h"
 #include "conformance/rlpcval/validator.h"
 
 namespace rlpc {

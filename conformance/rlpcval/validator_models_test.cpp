@@ -6,12 +6,12 @@
 #include <string_view>
 #include <vector>
 
-#include "common/bitstream/bit_writer.h"
+#include "common/codec/bits/bit_writer.h"
 #include "conformance/rlpcval/validator_elements.h"
 #include "conformance/rlpcval/validator_findings.h"
 #include "conformance/rlpcval/validator_headers.h"
-#include "conformance/rlpcval/validator_testing.h"
-#include "conformance/roundtrip/model_animation.h"
+#include "conformance/testing/model_animation.h"
+#include "conformance/testing/validator_streams.h"
 
 namespace rlpc {
 namespace {

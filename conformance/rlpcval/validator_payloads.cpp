@@ -5,21 +5,21 @@
 #include <string>
 #include <utility>
 
-#include "common/bitstream/crc32.h"
+#include "common/codec/bits/crc32.h"
+#include "common/codec/syntax/stream_format.h"
 #include "common/json/json_text.h"
-#include "common/syntax/stream_format.h"
 #include "conformance/rlpcval/validator_elements.h"
 #include "conformance/rlpcval/validator_gofs.h"
 #include "conformance/rlpcval/validator_stream.h"
-#include "decoder/parse/memory_estimate.h"
-#include "decoder/parse/parse_gof_hash.h"
-#include "decoder/parse/sequence/parse_clip_table.h"
-#include "decoder/parse/sequence/parse_connectivity.h"
-#include "decoder/parse/sequence/parse_metadata.h"
-#include "decoder/parse/sequence/parse_vertex_order.h"
-#include "decoder/recon/gof_recon.h"
-#include "decoder/stream/exceeded_limit.h"
-#include "decoder/stream/stream_reader.h"
+#include "decoder/codec/gofs/gof_recon.h"
+#include "decoder/codec/parse/memory_estimate.h"
+#include "decoder/codec/parse/parse_gof_hash.h"
+#include "decoder/codec/parse/sequence/parse_clip_table.h"
+#include "decoder/codec/parse/sequence/parse_connectivity.h"
+#include "decoder/codec/parse/sequence/parse_metadata.h"
+#include "decoder/codec/parse/sequence/parse_vertex_order.h"
+#include "decoder/codec/units/exceeded_limit.h"
+#include "decoder/codec/units/stream_reader.h"
 
 namespace rlpc {
 namespace {

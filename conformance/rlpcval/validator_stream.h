@@ -8,20 +8,20 @@
 #include <span>
 #include <vector>
 
-#include "common/attributes/attribute_set.h"
-#include "common/mesh/mesh.h"
-#include "common/syntax/access_unit.h"
-#include "common/syntax/stream_context.h"
+#include "common/codec/attributes/attribute_set.h"
+#include "common/codec/kinds/access_unit.h"
+#include "common/codec/mesh/mesh.h"
+#include "common/codec/syntax/stream_context.h"
 #include "conformance/rlpcval/validator.h"
 #include "conformance/rlpcval/validator_findings.h"
 #include "conformance/rlpcval/validator_headers.h"
 #include "conformance/rlpcval/validator_models.h"
 #include "conformance/rlpcval/validator_units.h"
-#include "decoder/parse/access_unit_parser.h"
-#include "decoder/parse/memory_limit.h"
-#include "decoder/parse/model_parser.h"
-#include "decoder/parse/parse_gof_hash.h"
-#include "decoder/recon/model_recons.h"
+#include "decoder/codec/gofs/model_recons.h"
+#include "decoder/codec/parse/access_unit_parser.h"
+#include "decoder/codec/parse/memory_limit.h"
+#include "decoder/codec/parse/model_parser.h"
+#include "decoder/codec/parse/parse_gof_hash.h"
 
 namespace rlpc {
 

@@ -10,13 +10,13 @@
 #include <tuple>
 #include <vector>
 
-#include "common/bitstream/bit_writer.h"
-#include "conformance/rlpcval/validator_testing.h"
-#include "conformance/roundtrip/model_animation.h"
+#include "common/codec/bits/bit_writer.h"
+#include "conformance/testing/model_animation.h"
+#include "conformance/testing/validator_streams.h"
 #include "decoder/rlpc_decoder.h"
-#include "encoder/write/write_cluster_gof.h"
-#include "encoder/write/write_connectivity.h"
-#include "encoder/write/write_stream.h"
+#include "encoder/codec/write/write_cluster_gof.h"
+#include "encoder/codec/write/write_connectivity.h"
+#include "encoder/codec/write/write_stream.h"
 
 namespace rlpc {
 namespace {

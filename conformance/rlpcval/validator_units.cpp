@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <string>
 
-#include "common/bitstream/crc32.h"
-#include "common/syntax/stream_format.h"
+#include "common/codec/bits/crc32.h"
+#include "common/codec/syntax/stream_format.h"
 
 namespace rlpc {
 namespace {

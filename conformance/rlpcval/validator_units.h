@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "conformance/rlpcval/validator_findings.h"
-#include "decoder/stream/byte_source.h"
-#include "decoder/stream/unit_reader.h"
+#include "decoder/codec/units/byte_source.h"
+#include "decoder/codec/units/unit_reader.h"
 
 namespace rlpc {
 

@@ -13,17 +13,17 @@
 #include <string>
 #include <vector>
 
-#include "common/attributes/recon/attribute_recon.h"
-#include "common/attributes/sectors.h"
-#include "common/bitstream/bit_reader.h"
-#include "common/bitstream/crc32.h"
-#include "common/mesh/corners.h"
-#include "decoder/parse/attributes/parse_attributes.h"
-#include "encoder/attributes/corner_map.h"
-#include "encoder/attributes/encode_attributes.h"
-#include "encoder/attributes/quantise_attribute.h"
-#include "encoder/write/write_attributes.h"
-#include "encoder/write/write_connectivity.h"
+#include "common/codec/attributes/recon/attribute_recon.h"
+#include "common/codec/attributes/sectors.h"
+#include "common/codec/bits/bit_reader.h"
+#include "common/codec/bits/crc32.h"
+#include "common/codec/mesh/corners.h"
+#include "decoder/codec/parse/attributes/parse_attributes.h"
+#include "encoder/codec/attributes/corner_map.h"
+#include "encoder/codec/attributes/encode_attributes.h"
+#include "encoder/codec/attributes/quantise_attribute.h"
+#include "encoder/codec/write/write_attributes.h"
+#include "encoder/codec/write/write_connectivity.h"
 
 namespace rlpc {
 namespace {

@@ -6,13 +6,13 @@
 #include <random>
 #include <vector>
 
-#include "common/bitstream/bit_reader.h"
-#include "common/bitstream/residual_models.h"
-#include "common/cluster_gof/recon/cluster_recon.h"
-#include "conformance/roundtrip/count_memory.h"
-#include "decoder/parse/parse_cluster_gof.h"
-#include "decoder/parse/parse_gof_header.h"
-#include "encoder/write/write_cluster_gof.h"
+#include "common/codec/bits/bit_reader.h"
+#include "common/codec/bits/residual_models.h"
+#include "common/codec/kinds/cluster/recon/cluster_recon.h"
+#include "conformance/testing/count_memory.h"
+#include "decoder/codec/parse/parse_cluster_gof.h"
+#include "decoder/codec/parse/parse_gof_header.h"
+#include "encoder/codec/write/write_cluster_gof.h"
 
 namespace rlpc {
 namespace {

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/coarse_mesh.h"
-#include "conformance/roundtrip/cut_streams_test.h"
-#include "conformance/roundtrip/small_animation.h"
-#include "conformance/roundtrip/stream_summary_test.h"
+#include "common/codec/mesh/coarse_mesh.h"
+#include "conformance/testing/cut_streams.h"
+#include "conformance/testing/small_animation.h"
+#include "conformance/testing/stream_summary.h"
 
 namespace rlpc {
 namespace {

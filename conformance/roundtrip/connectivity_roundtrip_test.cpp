@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "common/bitstream/bit_reader.h"
-#include "decoder/parse/sequence/parse_connectivity.h"
-#include "encoder/write/write_connectivity.h"
+#include "common/codec/bits/bit_reader.h"
+#include "decoder/codec/parse/sequence/parse_connectivity.h"
+#include "encoder/codec/write/write_connectivity.h"
 
 namespace rlpc {
 namespace {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/roundtrip/small_animation.h"
+#include "conformance/testing/small_animation.h"
 
 namespace rlpc {
 namespace {

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/bitstream/crc32.h"
-#include "conformance/roundtrip/sliced_animation.h"
+#include "common/codec/bits/crc32.h"
+#include "conformance/testing/sliced_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/roundtrip/model_animation.h"
+#include "conformance/testing/model_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

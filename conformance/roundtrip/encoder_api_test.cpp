@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/roundtrip/small_animation.h"
+#include "conformance/testing/small_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

@@ -9,16 +9,16 @@
 #include <utility>
 #include <vector>
 
-#include "common/bitstream/bit_reader.h"
-#include "common/mesh/coded_meshes.h"
+#include "common/codec/bits/bit_reader.h"
+#include "common/codec/mesh/coded_meshes.h"
 #include "common/parallel/for_each.h"
 #include "common/testing/random_frame_gof.h"
 #include "common/testing/tube.h"
-#include "decoder/parse/parse_frame_gof.h"
-#include "decoder/parse/parse_gof_header.h"
-#include "decoder/recon/ordered_recon.h"
-#include "encoder/frame_gof/frame_coding.h"
-#include "encoder/write/write_frame_gof.h"
+#include "decoder/codec/gofs/ordered_recon.h"
+#include "decoder/codec/parse/parse_frame_gof.h"
+#include "decoder/codec/parse/parse_gof_header.h"
+#include "encoder/codec/kinds/inter/frame_coding.h"
+#include "encoder/codec/write/write_frame_gof.h"
 
 namespace rlpc {
 namespace {

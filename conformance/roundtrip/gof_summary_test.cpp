@@ -1,5 +1,5 @@
 // What rlpcinfo lists of GOFs, from streams with layer groups, an absent slice, and clusters.
-#include "decoder/stream/gof_summary.h"
+#include "decoder/codec/units/gof_summary.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "conformance/roundtrip/model_animation.h"
-#include "conformance/roundtrip/stream_summary_test.h"
+#include "conformance/testing/model_animation.h"
+#include "conformance/testing/stream_summary.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/roundtrip/small_animation.h"
-#include "conformance/roundtrip/stream_summary_test.h"
+#include "conformance/testing/small_animation.h"
+#include "conformance/testing/stream_summary.h"
+#include "decoder/codec/units/gof_summary.h"
 #include "decoder/rlpc_decoder.h"
-#include "decoder/stream/gof_summary.h"
 
 namespace rlpc {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "common/json/json.h"
 #include "common/testing/random_json.h"
-#include "conformance/roundtrip/count_memory.h"
-#include "decoder/output/stream_asset.h"
+#include "conformance/testing/count_memory.h"
+#include "decoder/meshes/stream_asset.h"
 
 namespace rlpc {
 namespace {

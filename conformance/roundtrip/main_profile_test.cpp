@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/roundtrip/small_animation.h"
+#include "conformance/testing/small_animation.h"
 #include "decoder/rlpc_decoder.h"
-#include "encoder/metrics/metrics.h"
+#include "encoder/codec/metrics/metrics.h"
 
 namespace rlpc {
 namespace {

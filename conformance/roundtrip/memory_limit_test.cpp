@@ -1,4 +1,4 @@
-// The memory that a decoder allocates stays below what it estimates (decoder/parse/
+// The memory that a decoder allocates stays below what it estimates (decoder/codec/parse/
 // memory_estimate.h), which it compares with DecodeLimits::max_memory_bytes.
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "common/mesh/vertex_layers.h"
-#include "conformance/roundtrip/count_memory.h"
-#include "conformance/roundtrip/small_animation.h"
+#include "common/codec/mesh/vertex_layers.h"
+#include "conformance/testing/count_memory.h"
+#include "conformance/testing/small_animation.h"
 #include "conformance/tools/make_worst_case.h"
 #include "decoder/rlpc_decoder.h"
 

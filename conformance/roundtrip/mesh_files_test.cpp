@@ -9,10 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "common/io/float_position.h"
-#include "common/testing/scratch_folder_test.h"
-#include "decoder/output/frame_sink.h"
-#include "encoder/input/frame_source.h"
+#include "common/files/float_position.h"
+#include "common/testing/scratch_folder.h"
+#include "decoder/meshes/frame_sink.h"
+#include "encoder/meshes/frame_source.h"
+#include "encoder/meshes/open/open_source.h"
 
 namespace rlpc {
 namespace {

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "conformance/roundtrip/count_memory.h"
-#include "conformance/roundtrip/cut_streams_test.h"
-#include "conformance/roundtrip/model_animation.h"
-#include "decoder/recon/model_recons.h"
+#include "conformance/testing/count_memory.h"
+#include "conformance/testing/cut_streams.h"
+#include "conformance/testing/model_animation.h"
+#include "decoder/codec/gofs/model_recons.h"
+#include "decoder/codec/units/stream_reader.h"
 #include "decoder/rlpc_decoder.h"
-#include "decoder/stream/stream_reader.h"
 
 namespace rlpc {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/roundtrip/small_animation.h"
+#include "conformance/testing/small_animation.h"
 
 namespace rlpc {
 namespace {

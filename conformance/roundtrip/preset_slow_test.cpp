@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/parallel/for_each.h"
-#include "conformance/roundtrip/small_animation.h"
+#include "conformance/testing/small_animation.h"
 
 namespace rlpc {
 namespace {

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "conformance/roundtrip/model_animation.h"
-#include "conformance/roundtrip/small_animation.h"
+#include "conformance/testing/model_animation.h"
+#include "conformance/testing/small_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "common/bitstream/range_encoder.h"
-#include "decoder/parse/parse_residual.h"
-#include "encoder/write/write_residual.h"
+#include "common/codec/bits/range_encoder.h"
+#include "decoder/codec/parse/parse_residual.h"
+#include "encoder/codec/write/write_residual.h"
 
 namespace rlpc {
 namespace {

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "common/bitstream/bit_reader.h"
-#include "common/skinned_gof/recon/skinned_recon.h"
+#include "common/codec/bits/bit_reader.h"
+#include "common/codec/kinds/skinned/recon/skinned_recon.h"
 #include "common/testing/random_skinned_gof.h"
-#include "decoder/parse/parse_gof_header.h"
-#include "decoder/parse/parse_skinned_gof.h"
-#include "encoder/write/write_skinned_gof.h"
+#include "decoder/codec/parse/parse_gof_header.h"
+#include "decoder/codec/parse/parse_skinned_gof.h"
+#include "encoder/codec/write/write_skinned_gof.h"
 
 namespace rlpc {
 namespace {

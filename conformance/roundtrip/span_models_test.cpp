@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/roundtrip/frame_by_frame.h"
-#include "conformance/roundtrip/small_animation.h"
+#include "conformance/testing/frame_by_frame.h"
+#include "conformance/testing/small_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

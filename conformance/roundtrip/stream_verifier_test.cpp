@@ -1,5 +1,5 @@
 // The encoder's verification of its own streams notices what is wrong with them.
-#include "encoder/sequence/stream_verifier.h"
+#include "encoder/codec/sequence/stream_verifier.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "common/syntax/stream_format.h"
+#include "common/codec/syntax/stream_format.h"
 #include "common/verify/stream_rules.h"
-#include "conformance/roundtrip/small_animation.h"
+#include "conformance/testing/small_animation.h"
 
 namespace rlpc {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/roundtrip/count_memory.h"
+#include "conformance/testing/count_memory.h"
 #include "decoder/rlpc_decoder.h"
 #include "encoder/frame_encoder.h"
 

@@ -1,6 +1,6 @@
 // Cut streams: as the extractor writes them, and as a decoder with the same cut decodes the
 // original.
-#include "decoder/extract/sub_stream_extractor.h"
+#include "decoder/codec/extract/sub_stream_extractor.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/roundtrip/cut_streams_test.h"
-#include "conformance/roundtrip/model_animation.h"
+#include "conformance/testing/cut_streams.h"
+#include "conformance/testing/model_animation.h"
 
 namespace rlpc {
 namespace {

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/roundtrip/cut_streams_test.h"
+#include "conformance/testing/cut_streams.h"
 
 namespace rlpc {
 namespace {

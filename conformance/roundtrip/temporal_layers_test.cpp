@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "common/io/float_position.h"
-#include "conformance/roundtrip/cut_streams_test.h"
-#include "conformance/roundtrip/frame_by_frame.h"
-#include "conformance/roundtrip/small_animation.h"
-#include "conformance/roundtrip/stream_summary_test.h"
-#include "decoder/stream/gof_summary.h"
+#include "common/files/float_position.h"
+#include "conformance/testing/cut_streams.h"
+#include "conformance/testing/frame_by_frame.h"
+#include "conformance/testing/small_animation.h"
+#include "conformance/testing/stream_summary.h"
+#include "decoder/codec/units/gof_summary.h"
 
 namespace rlpc {
 namespace {

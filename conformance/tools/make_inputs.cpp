@@ -6,7 +6,7 @@
 #include <iostream>
 #include <utility>
 
-#include "common/io/binary_numbers.h"
+#include "common/files/binary_numbers.h"
 
 namespace rlpc::inputs {
 namespace {

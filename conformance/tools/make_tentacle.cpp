@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/binary_numbers.h"
+#include "common/files/binary_numbers.h"
 #include "conformance/tools/make_inputs.h"
 
 namespace rlpc::inputs {

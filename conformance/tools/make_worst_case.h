@@ -9,13 +9,13 @@
 #include <string_view>
 #include <vector>
 
-#include "common/cluster_gof/cluster_gof.h"
-#include "common/frame_gof/frame_gof.h"
-#include "common/mesh/coded_mesh.h"
-#include "common/mesh/mesh.h"
-#include "common/skinned_gof/skinned_gof.h"
-#include "common/syntax/sequence_header.h"
-#include "common/syntax/write_units.h"
+#include "common/codec/kinds/cluster/cluster_gof.h"
+#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/kinds/skinned/skinned_gof.h"
+#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/mesh.h"
+#include "common/codec/syntax/sequence_header.h"
+#include "common/codec/syntax/write_units.h"
 
 namespace rlpc::worst_case {
 

@@ -2,7 +2,7 @@
 // decoder longest.
 #include <span>
 
-#include "common/skinned_gof/influences.h"
+#include "common/codec/kinds/skinned/influences.h"
 #include "conformance/tools/make_worst_case.h"
 
 namespace rlpc::worst_case {

@@ -3,13 +3,13 @@
 #include <memory>
 #include <span>
 
-#include "common/mesh/coded_meshes.h"
+#include "common/codec/mesh/coded_meshes.h"
 #include "conformance/tools/make_worst_case.h"
-#include "encoder/write/write_cluster_gof.h"
-#include "encoder/write/write_connectivity.h"
-#include "encoder/write/write_frame_gof.h"
-#include "encoder/write/write_skinned_gof.h"
-#include "encoder/write/write_stream.h"
+#include "encoder/codec/write/write_cluster_gof.h"
+#include "encoder/codec/write/write_connectivity.h"
+#include "encoder/codec/write/write_frame_gof.h"
+#include "encoder/codec/write/write_skinned_gof.h"
+#include "encoder/codec/write/write_stream.h"
 
 namespace rlpc::worst_case {
 namespace {

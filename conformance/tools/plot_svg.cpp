@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/messages.h"
+#include "common/files/messages.h"
 #include "common/json/json.h"
 #include "decoder/report/svg_plot.h"
 

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <limits>
 
-#include "common/io/float_position.h"
-#include "common/owned.h"
+#include "common/files/float_position.h"
+#include "common/memory/owned.h"
 #include "decoder/surface/attribute_values.h"
 
 namespace rlpc {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "common/mesh/mesh.h"
-#include "common/owned.h"
+#include "common/codec/mesh/mesh.h"
+#include "common/memory/owned.h"
 #include "decoder/c_api/rlpc_frame_output.h"
 
 namespace rlpc {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/c_api/c_handle.h"
-#include "common/io/clip_time.h"
+#include "common/files/clip_time.h"
 #include "decoder/c_api/decoder_handle.h"
 #include "decoder/describe_error.h"
 #include "decoder/rlpc_decoder.h"

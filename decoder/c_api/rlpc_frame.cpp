@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
-#include "common/io/float_position.h"
-#include "common/owned.h"
+#include "common/files/float_position.h"
+#include "common/memory/owned.h"
 #include "decoder/c_api/convert_frame.h"
 #include "decoder/c_api/decoder_handle.h"
 #include "decoder/c_api/frame_output.h"

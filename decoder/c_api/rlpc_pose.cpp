@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "common/mesh/skeleton.h"
+#include "common/codec/mesh/skeleton.h"
 #include "decoder/c_api/decoder_handle.h"
 
 namespace rlpc {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/attributes/recon/attribute_recon.h"
+#include "common/codec/attributes/recon/attribute_recon.h"
 #include "common/testing/fuzz_input.h"
-#include "decoder/parse/attributes/parse_attributes.h"
+#include "decoder/codec/parse/attributes/parse_attributes.h"
 
 namespace {
 

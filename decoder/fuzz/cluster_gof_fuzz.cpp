@@ -8,13 +8,13 @@
 #include <random>
 #include <vector>
 
-#include "common/cluster_gof/recon/cluster_recon.h"
+#include "common/codec/kinds/cluster/recon/cluster_recon.h"
 #include "common/testing/fuzz_input.h"
+#include "decoder/codec/parse/parse_cluster_gof.h"
+#include "decoder/codec/parse/parse_gof_header.h"
+#include "decoder/codec/parse/sequence/parse_connectivity.h"
+#include "decoder/codec/parse/sequence/parse_sequence_header.h"
 #include "decoder/fuzz/recon_fuzz.h"
-#include "decoder/parse/parse_cluster_gof.h"
-#include "decoder/parse/parse_gof_header.h"
-#include "decoder/parse/sequence/parse_connectivity.h"
-#include "decoder/parse/sequence/parse_sequence_header.h"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
                                         std::size_t max_size);

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/mesh/topology.h"
+#include "common/codec/mesh/topology.h"
 #include "common/testing/fuzz_input.h"
-#include "decoder/parse/sequence/parse_connectivity.h"
+#include "decoder/codec/parse/sequence/parse_connectivity.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   rlpc::FuzzInput input(data, size);

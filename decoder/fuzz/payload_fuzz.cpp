@@ -6,13 +6,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/syntax/sequence_header.h"
+#include "common/codec/syntax/sequence_header.h"
 #include "common/testing/fuzz_input.h"
-#include "decoder/parse/parse_gof_hash.h"
-#include "decoder/parse/sequence/parse_clip_table.h"
-#include "decoder/parse/sequence/parse_gof_index.h"
-#include "decoder/parse/sequence/parse_metadata.h"
-#include "decoder/parse/sequence/parse_vertex_order.h"
+#include "decoder/codec/parse/parse_gof_hash.h"
+#include "decoder/codec/parse/sequence/parse_clip_table.h"
+#include "decoder/codec/parse/sequence/parse_gof_index.h"
+#include "decoder/codec/parse/sequence/parse_metadata.h"
+#include "decoder/codec/parse/sequence/parse_vertex_order.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/syntax/sequence_header.h"
+#include "common/codec/syntax/sequence_header.h"
 #include "common/testing/fuzz_input.h"
 
 namespace rlpc {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "common/syntax/stream_format.h"
+#include "common/codec/syntax/stream_format.h"
 #include "common/testing/fuzz_input.h"
-#include "decoder/parse/sequence/parse_sequence_header.h"
+#include "decoder/codec/parse/sequence/parse_sequence_header.h"
 
 namespace {
 

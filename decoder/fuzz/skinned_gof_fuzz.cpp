@@ -15,16 +15,16 @@
 #include <utility>
 #include <vector>
 
-#include "common/skinned_gof/model_slots.h"
-#include "common/skinned_gof/recon/model_recon.h"
-#include "common/skinned_gof/recon/skinned_recon.h"
-#include "common/syntax/stream_format.h"
+#include "common/codec/kinds/skinned/model_slots.h"
+#include "common/codec/kinds/skinned/recon/model_recon.h"
+#include "common/codec/kinds/skinned/recon/skinned_recon.h"
+#include "common/codec/syntax/stream_format.h"
 #include "common/testing/fuzz_input.h"
+#include "decoder/codec/parse/parse_gof_header.h"
+#include "decoder/codec/parse/parse_skinned_gof.h"
+#include "decoder/codec/parse/sequence/parse_connectivity.h"
+#include "decoder/codec/parse/sequence/parse_sequence_header.h"
 #include "decoder/fuzz/recon_fuzz.h"
-#include "decoder/parse/parse_gof_header.h"
-#include "decoder/parse/parse_skinned_gof.h"
-#include "decoder/parse/sequence/parse_connectivity.h"
-#include "decoder/parse/sequence/parse_sequence_header.h"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
                                         std::size_t max_size);

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/bitstream/crc32.h"
-#include "common/syntax/stream_format.h"
+#include "common/codec/bits/crc32.h"
+#include "common/codec/syntax/stream_format.h"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
                                         std::size_t max_size);

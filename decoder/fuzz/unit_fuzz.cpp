@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/testing/fuzz_input.h"
-#include "decoder/stream/unit_reader.h"
+#include "decoder/codec/units/unit_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::uint32_t kStartBytes = 16;

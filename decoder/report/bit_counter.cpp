@@ -3,7 +3,7 @@
 #include <cinttypes>
 #include <cstdio>
 
-#include "common/syntax/stream_format.h"
+#include "common/codec/syntax/stream_format.h"
 
 namespace rlpc {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/bitstream/trace.h"
+#include "common/codec/bits/trace.h"
 
 namespace rlpc {
 

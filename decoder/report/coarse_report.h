@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/mesh/coarse_mesh.h"
+#include "common/codec/mesh/coarse_mesh.h"
 #include "decoder/report/html_page.h"
 
 namespace rlpc {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/coarse_mesh.h"
+#include "common/codec/mesh/coarse_mesh.h"
 #include "decoder/report/html_page.h"
 #include "decoder/report/vertex_groups.h"
 

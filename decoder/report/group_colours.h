@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/mesh.h"
+#include "common/codec/mesh/mesh.h"
 
 namespace rlpc {
 

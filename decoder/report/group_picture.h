@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mesh/coarse_mesh.h"
+#include "common/codec/mesh/coarse_mesh.h"
 #include "decoder/report/group_colours.h"
 #include "decoder/report/mesh_projection.h"
 

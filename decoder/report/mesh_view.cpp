@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/json/json.h"
-#include "decoder/output/base64.h"
+#include "decoder/meshes/base64.h"
 #include "decoder/report/assets.h"
 
 namespace rlpc {

@@ -1,5 +1,5 @@
 // The animation of a MeshView (mesh_view.h) within a page, and the controls below it.
-import { Camera, Viewer, kRampCss } from "../viewer/viewer.js";
+import { Camera, Viewer, kRampCss } from "../web/viewer/viewer.js";
 
 const $ = (id) => document.getElementById(id);
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <string>
 
+#include "decoder/codec/units/gof_summary.h"
 #include "decoder/report/bit_counter.h"
 #include "decoder/report/html_page.h"
-#include "decoder/stream/gof_summary.h"
 
 namespace rlpc {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "decoder/output/base64.h"
+#include "decoder/meshes/base64.h"
 #include "decoder/report/coarse_report.h"
 #include "decoder/report/html_page.h"
 #include "decoder/report/mesh_view.h"

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <variant>
 
-#include "common/skinned_gof/recon/model_recon.h"
+#include "common/codec/kinds/skinned/recon/model_recon.h"
 
 namespace rlpc {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/syntax/access_unit.h"
-#include "common/syntax/stream_context.h"
+#include "common/codec/kinds/access_unit.h"
+#include "common/codec/syntax/stream_context.h"
 
 namespace rlpc {
 

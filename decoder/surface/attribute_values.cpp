@@ -6,8 +6,8 @@
 #include <cstring>
 #include <utility>
 
-#include "common/attributes/recon/normals.h"
-#include "common/attributes/sectors.h"
+#include "common/codec/attributes/recon/normals.h"
+#include "common/codec/attributes/sectors.h"
 #include "common/surface/local_turn.h"
 
 namespace rlpc {

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <span>
 
-#include "common/attributes/attribute_set.h"
-#include "common/mesh/mesh.h"
-#include "common/mesh/topology.h"
-#include "common/owned.h"
+#include "common/codec/attributes/attribute_set.h"
+#include "common/codec/mesh/mesh.h"
+#include "common/codec/mesh/topology.h"
+#include "common/memory/owned.h"
 
 namespace rlpc {
 

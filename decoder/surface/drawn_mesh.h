@@ -7,9 +7,9 @@
 #include <optional>
 #include <span>
 
-#include "common/attributes/attribute_set.h"
-#include "common/mesh/mesh.h"
-#include "common/owned.h"
+#include "common/codec/attributes/attribute_set.h"
+#include "common/codec/mesh/mesh.h"
+#include "common/memory/owned.h"
 #include "decoder/surface/attribute_values.h"
 #include "decoder/surface/split_vertices.h"
 

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <numeric>
 
-#include "common/attributes/sectors.h"
+#include "common/codec/attributes/sectors.h"
 
 namespace rlpc {
 namespace {

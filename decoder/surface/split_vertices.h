@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "common/attributes/attribute_set.h"
-#include "common/mesh/mesh.h"
-#include "common/owned.h"
+#include "common/codec/attributes/attribute_set.h"
+#include "common/codec/mesh/mesh.h"
+#include "common/memory/owned.h"
 
 namespace rlpc {
 

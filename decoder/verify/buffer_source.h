@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "common/verify/stream_buffer.h"
-#include "decoder/stream/byte_source.h"
+#include "decoder/codec/units/byte_source.h"
 
 namespace rlpc {
 

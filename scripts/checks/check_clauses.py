@@ -7,7 +7,7 @@ Citations    "// 8.4.2 Title", "clause 8.4.2", "Annex B" and "Table 9-1" in comm
 Rules        every rule id in C++ code or pseudo-code, like R-HDR-03, is defined once in spec/,
              as {R-HDR-03}.
 Elements     every syntax element of the `rlpc` blocks (name = u(1), name = ue(), name = ae(...))
-             is a string literal in exactly one file of decoder/parse/ (or the reader of units),
+             is a string literal in exactly one file of decoder/codec/parse/ (or the reader of units),
              or read in exactly one other file of decoder/, and none reads others. An element
              that several functions of the specification read may be in as many files. Blocks of
              the clause of the parsing process describe bins, not elements.
@@ -21,7 +21,7 @@ import sys
 import cpp_source
 
 PARSING_PROCESS = "9"
-PARSERS = ("decoder/parse/", "decoder/stream/unit_reader.")
+PARSERS = ("decoder/codec/parse/", "decoder/codec/units/unit_reader.")
 
 _NUMBER = r"(?:\d+|[A-Z])(?:\.\d+)*"
 _DOTTED = r"(?:[1-9]\d*|[A-Z])(?:\.[1-9]\d*)+"

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Every constant of the encoder's search says what it is: tuned, or fixed.
 
-In the sources of the search (scripts/tuning/tuned.py), each constant that is declared with a
+In the sources of the search (scripts/studies/tuning/tuned.py), each constant that is declared with a
 number has a comment `tuned: REASON` or `fixed: REASON` behind or above it, and no number with a
 fraction stands anywhere else, but for those of plain formulas (halves, bits of a byte, per cent).
-Tuned constants have different names, and encoder/skinned_gof/search/README.md has a row for each,
+Tuned constants have different names, and encoder/codec/kinds/skinned/search/README.md has a row for each,
 and for no other.
 """
 
@@ -13,11 +13,11 @@ import sys
 
 import cpp_source
 
-sys.path.insert(0, str(cpp_source.repository_root() / "scripts" / "tuning"))
+sys.path.insert(0, str(cpp_source.repository_root() / "scripts" / "studies" / "tuning"))
 import tuned  # noqa: E402
 import worth  # noqa: E402
 
-PAGE = "encoder/skinned_gof/search/README.md"
+PAGE = "encoder/codec/kinds/skinned/search/README.md"
 # Halves and doubles, coordinates, bits of a byte (or eighths of an octave), the variance of a
 # uniform distribution, per cent.
 PLAIN = {"0.0", "0.5", "1.0", "2.0", "3.0", "8.0", "12.0", "100.0"}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""No floating point in the integer folders (scripts/checks/rooms.py), except in common/io
+"""No floating point in the integer folders (scripts/checks/rooms.py), except in common/files
 and common/surface.
 
 Tests may use it. Division and shifts of signed numbers are not checked: text alone cannot

@@ -95,13 +95,13 @@ def validator_code(root):
     text = "".join(cpp_source.without_comments(path.read_text(encoding="utf-8")) for path in own)
     if not own:
         return ""
-    seen, waiting = set(), {"common/bitstream/bit_reader.cpp"}
+    seen, waiting = set(), {"common/codec/bits/bit_reader.cpp"}
     while waiting:
         seen |= waiting
         paths = [root / name for name in sorted(waiting) if (root / name).exists()]
         text += "".join(cpp_source.without_comments(path.read_text(encoding="utf-8"))
                         for path in paths)
-        included = re.findall(r'#include "(decoder/parse/[\w/]+)\.h"', text)
+        included = re.findall(r'#include "(decoder/codec/parse/[\w/]+)\.h"', text)
         waiting = {name + end for name in included for end in (".h", ".cpp")} - seen
     return text
 

@@ -28,7 +28,7 @@ def files(root, folders, suffixes=(".c", ".h", ".cpp")):
 
 
 def is_test(path):
-    return path.stem.endswith(("_test", "_fuzz", "_bench"))
+    return path.stem.endswith(("_test", "_fuzz", "_bench")) or path.parent.name == "testing"
 
 
 def _blank(text):

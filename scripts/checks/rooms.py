@@ -7,168 +7,219 @@ them), and single files; other libraries only where LIBRARIES says so.
 import pathlib
 
 # Kinds of GOF: a folder of each side has these names.
-_KINDS = sorted(path.name for path in (pathlib.Path(__file__).parents[2] / "common").glob("*_gof"))
+_KINDS = sorted(path.name for path in (
+    pathlib.Path(__file__).parents[2] / "common" / "codec" / "kinds").glob("*") if path.is_dir())
 
 
 def _of_kinds(folder):
     return {folder.format(kind) for kind in _KINDS}
 
 
-_BITS = {"common", "common/bitstream"}
-_MESH = _BITS | {"common/mesh"}
-_GOFS = _MESH | {"common/syntax", "common/components", "common/rest"} | _of_kinds("common/{}")
-_RECON = {"common/kernels", "common/mesh_prediction", "common/parallel"} | _of_kinds("common/{}/recon")
-_PARSE = {"decoder/parse", "decoder/parse/sequence"}
+_KIND = "common/codec/kinds/{}"
+_BITS = {"common", "common/memory", "common/codec/bits"}
+_MESH = _BITS | {"common/codec/mesh"}
+_SHAPE = _MESH | {"common/codec/components", "common/codec/rest"}
+_GOFS = _SHAPE | {"common/codec/syntax"} | _of_kinds(_KIND)
+_RECON = {"common/codec/kernels", "common/codec/mesh_prediction", "common/parallel"}
+_RECON |= _of_kinds(_KIND + "/recon")
+_ATTRIBUTES = {"common/codec/attributes", "common/codec/attributes/recon"}
+_PARSE = {"decoder/codec/parse", "decoder/codec/parse/sequence"}
 _PUBLIC_DECODER = {"decoder"}
-_ENCODER = _GOFS | _RECON | {"encoder", "encoder/gof", "encoder/math", "encoder/rest",
-                            "encoder/write"}
-_QUANTISE = {"encoder/skinned_gof/fit", "encoder/skinned_gof/tracks"}
-_SKINNED = _QUANTISE | {"encoder/skinned_gof/quantise", "encoder/skinned_gof/search",
-                        "encoder/skinned_gof/reuse"}
+_CHOICES = {"encoder/codec", "encoder/meshes/frame_source.h"}
+_ENCODER = _GOFS | _RECON | _CHOICES | {"encoder/codec/math", "encoder/codec/rest",
+                                        "encoder/codec/spans", "encoder/codec/write"}
+_ENCODER_KINDS = _of_kinds("encoder/codec/kinds/{}")
+_SKINNED = "encoder/codec/kinds/skinned"
+_QUANTISE = {_SKINNED + "/fit", _SKINNED + "/tracks"}
+_SKINNED_ROOMS = _QUANTISE | {_SKINNED + "/quantise", _SKINNED + "/search", _SKINNED + "/reuse"}
+# Readers and writers of mesh files know these, and nothing of coding.
+_MESH_FILES = {"common", "common/memory", "common/codec/bits/fixed_point.h", "common/codec/mesh",
+               "common/files", "common/json"}
 
 ROOMS = {
-    # Integers only, shared by readers and writers of streams.
     "common": set(),
-    "common/bitstream": {"common"},
-    "common/mesh": _BITS,
-    "common/components": _BITS,
-    # Texture coordinates, normals and the like (Annex F).
-    "common/attributes": _MESH,
-    "common/attributes/recon": _MESH | {"common/attributes"},
+    # Memory of callers, for containers of the decoder.
+    "common/memory": {"common"},
+    "common/parallel": {"common/memory"},
+
+    # Integers only, shared by readers and writers of streams.
+    "common/codec/bits": {"common", "common/memory"},
+    "common/codec/mesh": _BITS,
+    "common/codec/components": _BITS,
     # Positions in an order of their own (8.18): rest positions, first frames.
-    "common/rest": _MESH,
+    "common/codec/rest": _MESH,
+    "common/codec/syntax": _MESH,
+    # What the kinds of GOF have in common: an access unit holds one of any.
+    "common/codec/kinds": _GOFS,
+    **dict.fromkeys(_of_kinds(_KIND), _SHAPE | {"common/codec/syntax"}),
+    **dict.fromkeys(_of_kinds(_KIND + "/recon"), _GOFS | _RECON),
+    "common/codec/kernels": _BITS | {"common/codec/components"},
+    "common/codec/mesh_prediction": _SHAPE | {"common/codec/kernels", "common/parallel"},
+    # Texture coordinates, normals and the like (Annex F).
+    "common/codec/attributes": _MESH,
+    "common/codec/attributes/recon": _MESH | {"common/codec/attributes"},
+
     # Rotations of the surface of a frame, which players show and encoders expect; floats (F.8.5).
-    "common/surface": {"common", "common/mesh"},
-    "common/syntax": _GOFS,
-    **dict.fromkeys(_of_kinds("common/{}"), _MESH | {"common/syntax", "common/components", "common/rest"}),
-    "common/kernels": {"common", "common/components"},
-    "common/parallel": {"common/owned.h"},
-    "common/mesh_prediction": {"common", "common/components", "common/mesh", "common/kernels",
-                               "common/parallel", "common/rest"},
-    **dict.fromkeys(_of_kinds("common/{}/recon"), _GOFS | _RECON),
+    "common/surface": {"common", "common/memory", "common/codec/mesh"},
+    # Files and terminals, for programs and for readers and writers of files; floats (7.3).
+    "common/files": _MESH,
+    # All reading and writing of JSON.
+    "common/json": {"common", "common/memory"},
+    # Command lines of programs.
+    "common/cli": {"common/files"},
     # What encoders verify their streams by: declared here, implemented by decoder/verify and
     # conformance/rlpcval, joined when programs are linked, so that neither side includes the
     # other.
     "common/verify": {"common"},
-    "common/c_api": {"common"},
+    "common/c_api": {"common", "common/memory"},
     "common/testing": _GOFS,
-    # Files and terminals, for programs and for readers and writers of files; floats (7.3).
-    "common/io": {"common", "common/mesh"},
-    # Command lines of programs.
-    "common/tools": {"common/io"},
-    # All reading and writing of JSON.
-    "common/json": {"common"},
+
+    # What callers choose.
+    "decoder/codec": _BITS | {"common/codec/syntax"},
     # Bits to structures; no reconstruction, no files.
-    "decoder/parse": _GOFS | {"decoder/slice_cut.h"},
-    "decoder/parse/sequence": _GOFS | {"decoder/parse"},
-    "decoder/parse/attributes": _MESH | {"common/attributes", "decoder/parse"},
+    "decoder/codec/parse": _GOFS | {"common/codec/kinds", "decoder/codec/slice_cut.h"},
+    "decoder/codec/parse/sequence": _GOFS | {"decoder/codec/parse"},
+    "decoder/codec/parse/attributes": _MESH | {"common/codec/attributes", "decoder/codec/parse"},
+    "decoder/codec/units": _GOFS | _PARSE | {"common/codec/kinds", "decoder/codec"},
     # Structures to positions.
     # It parses, too, where frames are decoded before their GOF has been read.
-    "decoder/recon": _GOFS | _RECON | {"decoder/parse", "decoder/stream"},
-    "decoder/stream": _GOFS | _PARSE | _PUBLIC_DECODER,
-    "decoder": _GOFS | {"common/attributes", "common/attributes/recon", "common/io",
-                        "common/parallel", "decoder/parse/attributes",
-                        "decoder/parse/sequence/parse_asset.h", "decoder/stream",
-                        "decoder/recon"},
-    "decoder/extract": {"common/json"} | _GOFS | _PARSE | {"decoder/parse/attributes"} | {"decoder/recon", "decoder/stream"} | _PUBLIC_DECODER,
-    "decoder/report": _GOFS | {"common/json", "decoder/stream", "decoder/output",
-                               "common/skinned_gof/recon/model_recon.h"} | _PUBLIC_DECODER,
+    "decoder/codec/gofs": _GOFS | _RECON | {"common/codec/kinds", "decoder/codec",
+                                            "decoder/codec/parse", "decoder/codec/units"},
+    "decoder": _GOFS | _ATTRIBUTES | {
+        "common/files", "common/parallel", "decoder/codec", "decoder/codec/gofs",
+        "decoder/codec/parse/attributes", "decoder/codec/parse/sequence/parse_asset.h",
+        "decoder/codec/units"},
+    "decoder/codec/extract": _GOFS | _PARSE | _PUBLIC_DECODER | {
+        "common/codec/kinds", "common/json", "decoder/codec", "decoder/codec/gofs",
+        "decoder/codec/parse/attributes", "decoder/codec/units"},
+    "decoder/verify": {"common/verify", "decoder/codec/units"} | _PUBLIC_DECODER,
     # Attributes and vertices as programs draw them.
-    "decoder/surface": {"common", "common/attributes", "common/attributes/recon", "common/mesh",
-                        "common/surface"},
-    "decoder/verify": {"common/verify", "decoder/stream"} | _PUBLIC_DECODER,
-    "decoder/c_api": {"common/c_api", "common/owned.h", "common/io/clip_time.h",
-                      "common/io/float_position.h",
-                      "common/mesh", "decoder/surface"} | _PUBLIC_DECODER,
-    # Writers of mesh files know nothing of coding.
-    "decoder/output": {"common", "common/attributes", "common/io", "common/json", "common/mesh",
-                       "decoder/surface"},
+    "decoder/surface": _ATTRIBUTES | {"common", "common/memory", "common/codec/mesh",
+                                      "common/surface"},
+    # Writers of mesh files.
+    "decoder/meshes": _MESH_FILES | {"common/codec/attributes", "decoder/surface"},
     # A skin is made from all frames at once, on several threads.
-    "decoder/output/gltf": {"common", "common/attributes", "common/io", "common/json",
-                            "common/mesh", "common/parallel",
-                            "decoder/output", "decoder/surface"},
+    "decoder/meshes/gltf": _MESH_FILES | {"common/codec/attributes", "common/parallel",
+                                          "decoder/meshes", "decoder/surface"},
+    "decoder/report": _GOFS | _PUBLIC_DECODER | {
+        "common/codec/kinds", "common/codec/kinds/skinned/recon/model_recon.h", "common/json",
+        "decoder/codec/units", "decoder/meshes"},
+    "decoder/c_api": _PUBLIC_DECODER | {
+        "common/c_api", "common/codec/mesh", "common/files/clip_time.h",
+        "common/files/float_position.h", "common/memory", "decoder/surface"},
     # The decoder for JavaScript.
-    "decoder/js/wasm": {"common", "common/attributes", "common/bitstream", "common/io",
-                        "common/mesh", "decoder/stream", "decoder/recon/prefetch.h",
-                        "decoder/surface"} | _PUBLIC_DECODER,
-    "decoder/player": {"common/io", "common/json", "decoder/output", "decoder/stream", "decoder/tools"}
-                      | _PUBLIC_DECODER,
-    "decoder/tools": _GOFS | {"common/io", "common/json", "common/tools", "decoder/extract", "decoder/output",
-                              "decoder/player",
-                              "decoder/report", "decoder/stream"} | _PUBLIC_DECODER,
-    "decoder/fuzz": _GOFS | _RECON | _PARSE | {"common/testing", "decoder/stream"}
-                    | _PUBLIC_DECODER,
+    "decoder/web/wasm": _PUBLIC_DECODER | {
+        "common", "common/codec/attributes", "common/codec/bits", "common/codec/mesh",
+        "common/files", "common/memory", "decoder/codec/gofs/prefetch.h", "decoder/codec/units",
+        "decoder/surface"},
+    # The page that rlpcdec puts streams in.
+    "decoder/web/player": _PUBLIC_DECODER | {"common/files", "common/json", "decoder/codec/units",
+                                             "decoder/meshes"},
+    "decoder/programs": _PUBLIC_DECODER | {"common", "common/files", "decoder/codec/units"},
+    "decoder/programs/rlpcdec": _PUBLIC_DECODER | {
+        "common", "common/cli", "common/codec/mesh", "common/codec/syntax", "common/files",
+        "common/json", "decoder/meshes", "decoder/programs", "decoder/web/player"},
+    "decoder/programs/rlpcinfo": _PUBLIC_DECODER | {
+        "common", "common/cli", "common/codec/mesh", "common/codec/syntax", "common/files",
+        "common/json", "decoder/codec/extract", "decoder/codec/units", "decoder/programs",
+        "decoder/report"},
+    "decoder/testing": _GOFS | _PARSE | {"common/codec/kinds", "common/testing"},
+    "decoder/fuzz": _GOFS | _RECON | _PARSE | _PUBLIC_DECODER | {
+        "common/codec/kinds", "common/testing", "decoder/codec/units"},
+
     # Floating point, decisions, structures to bits.
-    "encoder": {"common/mesh", "common/frame_gof", "encoder/attributes", "common/skinned_gof", "common/syntax", "encoder/input",
-                "encoder/metrics"},
-    "encoder/math": {"common/parallel"},
-    "encoder/metrics": {"common/mesh", "encoder/math"},
-    "encoder/write": _GOFS | {"common/attributes", "encoder/math/det_math.h"},
-    "encoder/attributes": _MESH | {"common/attributes", "common/attributes/recon",
-                                   "common/parallel", "common/surface",
-                                   "encoder/input/source_attribute.h", "encoder/math",
-                                   "encoder/write"},
-    "encoder/gof": _ENCODER,
+    "encoder": {"encoder/codec", "encoder/codec/sequence", "encoder/meshes",
+                "encoder/meshes/open"},
+    # What callers choose, and are told.
+    "encoder/codec": {"common/codec/kinds/inter", "common/codec/kinds/skinned",
+                      "common/codec/mesh", "common/codec/syntax", "encoder/codec/attributes",
+                      "encoder/codec/metrics", "encoder/meshes"},
+    "encoder/codec/math": {"common/parallel"},
+    "encoder/codec/metrics": {"common/codec/mesh", "encoder/codec/math"},
+    "encoder/codec/write": _GOFS | {"common/codec/attributes", "common/codec/kinds",
+                                    "encoder/codec/math/det_math.h"},
+    "encoder/codec/attributes": _MESH | _ATTRIBUTES | {
+        "common/parallel", "common/surface", "encoder/codec/math", "encoder/codec/write",
+        "encoder/meshes/source_attribute.h"},
+    "encoder/codec/spans": _ENCODER,
     # Parts of a mesh, whatever they are for.
-    "encoder/partition": {"common/mesh", "common/parallel", "encoder", "encoder/gof",
-                          "encoder/math"},
-    **dict.fromkeys(_of_kinds("encoder/{}"), _ENCODER | {"encoder/partition"}),
-    "encoder/skinned_gof": _ENCODER | _SKINNED,
-    **dict.fromkeys(("encoder/skinned_gof/fit", "encoder/skinned_gof/tracks"), _ENCODER),
-    "encoder/rest": _ENCODER,
-    "encoder/skinned_gof/quantise": _ENCODER | _QUANTISE,
-    "encoder/skinned_gof/search": _ENCODER | _QUANTISE | {"encoder/skinned_gof/quantise"},
-    "encoder/skinned_gof/reuse": _ENCODER | _SKINNED - {"encoder/skinned_gof/reuse"},
-    "encoder/sequence/choices": _ENCODER | _of_kinds("encoder/{}") | {
-        "encoder/input", "encoder/input/formats"},
-    "encoder/sequence/target": _ENCODER | {"encoder/input", "encoder/metrics"},
-    "encoder/sequence": _ENCODER | _of_kinds("encoder/{}") | {
-        "encoder/sequence/choices", "encoder/sequence/target", "encoder/attributes",
-        "common/attributes/attribute_set.h", "common/io", "common/verify", "encoder/input", "encoder/input/formats", "encoder/metrics"},
+    "encoder/codec/partition": _CHOICES | {"common/codec/mesh", "common/parallel",
+                                           "encoder/codec/math", "encoder/codec/spans"},
+    "encoder/codec/rest": _ENCODER,
+    **dict.fromkeys(_ENCODER_KINDS, _ENCODER | {"encoder/codec/partition"}),
+    _SKINNED: _ENCODER | _SKINNED_ROOMS,
+    **dict.fromkeys(_QUANTISE, _ENCODER),
+    _SKINNED + "/quantise": _ENCODER | _QUANTISE,
+    _SKINNED + "/search": _ENCODER | _QUANTISE | {_SKINNED + "/quantise"},
+    _SKINNED + "/reuse": _ENCODER | _SKINNED_ROOMS - {_SKINNED + "/reuse"},
+    "encoder/codec/sequence/choices": _ENCODER | _ENCODER_KINDS | {"encoder/meshes"},
+    "encoder/codec/sequence/target": _ENCODER | {"encoder/codec/metrics", "encoder/meshes"},
+    "encoder/codec/sequence": _ENCODER | _ENCODER_KINDS | {
+        "common/codec/attributes/attribute_set.h", "common/files", "common/verify",
+        "encoder/codec/attributes", "encoder/codec/metrics", "encoder/codec/sequence/choices",
+        "encoder/codec/sequence/target", "encoder/meshes"},
     "encoder/c_api": {"common/c_api", "encoder"},
-    # Readers of mesh files know nothing of coding.
-    "encoder/input": {"common", "common/attributes/attribute_set.h", "common/io", "common/json",
-                      "common/mesh",
-                      "common/syntax/stream_format.h",
-                      "encoder/input/formats", "encoder/input/gltf", "encoder/input/polygons"},
+    # Readers of mesh files: the interface, and what formats share.
+    "encoder/meshes": _MESH_FILES | {"common/codec/attributes/attribute_set.h",
+                                     "encoder/codec/math/det_math.h",
+                                     "encoder/meshes/polygons"},
     # The order of frames, by the names of their files.
-    "encoder/input/names": {"common/io", "encoder/input/frame_source.h"},
+    "encoder/meshes/names": {"common/files", "encoder/meshes"},
     # Polygons as triangles.
-    "encoder/input/polygons": {"common/io", "common/mesh", "encoder/input/mesh_reader.h"},
-    "encoder/input/formats": {"common", "common/io", "common/mesh", "encoder/input",
-                              "encoder/input/names", "encoder/input/polygons",
-                              "encoder/math/det_math.h"},
-    "encoder/input/gltf/document": {"common", "common/io", "common/json", "common/mesh", "encoder/input"},
-    "encoder/input/gltf": {"common", "common/io", "common/json", "common/mesh", "common/syntax/sequence_header.h",
-                           "encoder/input", "encoder/input/formats", "encoder/input/gltf/document",
-                           "encoder/math/det_math.h"},
-    "encoder/input/fuzz": {"common/testing", "encoder/input", "encoder/input/formats",
-                           "encoder/input/gltf", "encoder/input/gltf/document"},
-    "encoder/tools": {"common/io", "common/json", "common/syntax", "common/tools", "encoder", "encoder/input",
-                      "encoder/metrics", "encoder/frame_gof", "encoder/sequence",
-                      "encoder/sequence/target"},
+    "encoder/meshes/polygons": {"common/codec/mesh", "common/files"},
+    # Families of formats.
+    "encoder/meshes/materials": _MESH_FILES | {"encoder/meshes"},
+    "encoder/meshes/obj": _MESH_FILES | {"encoder/meshes"},
+    "encoder/meshes/off": _MESH_FILES | {"encoder/meshes"},
+    "encoder/meshes/ply": _MESH_FILES | {"encoder/meshes"},
+    "encoder/meshes/rlpd": _MESH_FILES | {"encoder/codec/math/det_math.h", "encoder/meshes"},
+    "encoder/meshes/point_cache": _MESH_FILES | {"encoder/meshes", "encoder/meshes/materials"},
+    "encoder/meshes/sequence": _MESH_FILES | {"encoder/meshes", "encoder/meshes/materials",
+                                              "encoder/meshes/names"},
+    "encoder/meshes/gltf/document": _MESH_FILES | {"encoder/meshes"},
+    "encoder/meshes/gltf": _MESH_FILES | {"common/codec/syntax/sequence_header.h",
+                                          "encoder/codec/math/det_math.h", "encoder/meshes",
+                                          "encoder/meshes/gltf/document"},
+    # All of them, by name or contents.
+    "encoder/meshes/open": _MESH_FILES | {
+        "common/codec/attributes/attribute_set.h", "common/codec/syntax/stream_format.h",
+        "encoder/meshes", "encoder/meshes/gltf", "encoder/meshes/names", "encoder/meshes/obj",
+        "encoder/meshes/off", "encoder/meshes/ply", "encoder/meshes/point_cache",
+        "encoder/meshes/rlpd", "encoder/meshes/sequence"},
+    "encoder/meshes/fuzz": {"common/testing", "encoder/meshes", "encoder/meshes/gltf",
+                            "encoder/meshes/gltf/document", "encoder/meshes/obj",
+                            "encoder/meshes/off", "encoder/meshes/ply",
+                            "encoder/meshes/point_cache", "encoder/meshes/rlpd"},
+    "encoder/programs/rlpcenc": {
+        "common/cli", "common/codec/syntax", "common/files", "common/json", "encoder",
+        "encoder/codec/kinds/inter", "encoder/codec/metrics", "encoder/codec/sequence",
+        "encoder/codec/sequence/target", "encoder/meshes", "encoder/meshes/open"},
+    "encoder/testing": _ENCODER | _QUANTISE | _MESH_FILES | {
+        "common/testing", "encoder/codec/kinds/skinned", "encoder/codec/partition",
+        "encoder/meshes", "encoder/meshes/gltf", "encoder/meshes/open"},
 }
 # Files that a room must not include although their folder is open to it: vertex layers are made
 # with the connectivity (8.9), not while a GOF is parsed.
-CLOSED = {room: {"common/mesh/vertex_layers.h"} for room in _PARSE}
+CLOSED = {room: {"common/codec/mesh/vertex_layers.h"} for room in _PARSE}
 # A room must not call by name the functions that headers of these folders and files declare,
 # whichever header makes them visible.
-NOT_CALLED = {room: (*sorted(_of_kinds("common/{}/recon")), "common/mesh_prediction",
-                     "common/kernels", "decoder/recon", "common/mesh/vertex_layers.h",
-                     "common/io") for room in _PARSE}
-NOT_CALLED |= {room: ("common/io",) for room in ("decoder/recon", "decoder/stream")}
+NOT_CALLED = {room: (*sorted(_of_kinds(_KIND + "/recon")), "common/codec/mesh_prediction",
+                     "common/codec/kernels", "decoder/codec/gofs",
+                     "common/codec/mesh/vertex_layers.h", "common/files") for room in _PARSE}
+NOT_CALLED |= {room: ("common/files",) for room in ("decoder/codec/gofs", "decoder/codec/units")}
 # May include both sides; nothing includes it.
 BOTH_SIDES = "conformance"
 
 # Layers that neither throw nor catch, except the C interface, programs, and threads.
 NEITHER_THROW_NOR_CATCH = {"common", "decoder"}
-MAY_CATCH = {"common/c_api", "common/io", "common/parallel", "common/tools", "decoder/c_api",
-             "decoder/tools", "decoder/recon/async.cpp"}
+MAY_CATCH = {"common/c_api", "common/files", "common/parallel", "common/cli", "decoder/c_api",
+             "decoder/programs", "decoder/programs/rlpcdec", "decoder/programs/rlpcinfo",
+             "decoder/codec/gofs/async.cpp", "common/memory/owned.cpp"}
 
 # Folders without floating point, with all folders in them except FILES and SURFACE.
-INTEGER_FOLDERS = ("common", "decoder/parse", "decoder/recon", "decoder/stream",
-                   "decoder/extract")
-FILES = "common/io"
+INTEGER_FOLDERS = ("common", "decoder/codec/parse", "decoder/codec/gofs", "decoder/codec/units",
+                   "decoder/codec/extract")
+FILES = "common/files"
 SURFACE = "common/surface"
 
 _TOOLS = {"CLI", "nlohmann", "zlib.h", "sys"}
@@ -178,9 +229,9 @@ LIBRARIES = {
     "common": {"zlib.h", "immintrin.h", "wasm_simd128.h"},
     FILES: {"sys"},
     "common/json": {"nlohmann"},
-    "common/tools": {"CLI"},
+    "common/cli": {"CLI"},
     "decoder": _TOOLS,
-    "decoder/output/gltf": {"Eigen", "nlohmann"},
+    "decoder/meshes/gltf": {"Eigen", "nlohmann"},
     "encoder": _TOOLS | {"Eigen"},
     "conformance": _TOOLS | _PEERS | {"Eigen"},
 }

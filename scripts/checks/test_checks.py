@@ -160,8 +160,8 @@ class Labels(unittest.TestCase):
 
 class Clauses(TreeTest):
     def run_on(self, code, *expected, spec=SPEC, parser=PARSER):
-        tree = {"spec/06-syntax.md": spec, "common/a.h": code, "decoder/parse/parse_a.cpp": parser,
-                "decoder/stream/unit_reader.cpp": ""}
+        tree = {"spec/06-syntax.md": spec, "common/a.h": code, "decoder/codec/parse/parse_a.cpp": parser,
+                "decoder/codec/units/unit_reader.cpp": ""}
         (self.assert_one if expected else self.assert_clean)(check_clauses.check, tree, *expected)
 
     def test_empty_spec_is_an_error(self):
@@ -169,7 +169,7 @@ class Clauses(TreeTest):
 
     def test_missing_parsers_are_an_error(self):
         found = self.complaints(check_clauses.check, {"spec/06-syntax.md": SPEC})
-        self.assertIn("decoder/parse/ has no sources", found)
+        self.assertIn("decoder/codec/parse/ has no sources", found)
 
     def test_correct_citations_pass(self):
         self.run_on("// 6.3.1 Sequence header syntax: why\n// 6.3.1 sequence_header( )\n"
@@ -213,9 +213,9 @@ class Clauses(TreeTest):
 
     def test_element_with_two_parsers(self):
         found = self.complaints(check_clauses.check, {
-            "spec/06-syntax.md": SPEC, "decoder/parse/parse_a.cpp": PARSER, "decoder/stream/unit_reader.cpp": "",
-            "decoder/parse/parse_b.h": 'r.flag("lcf_flag");\n',
-            "decoder/parse/parse_b_test.cpp": 'expect("lcf_flag");\n'})
+            "spec/06-syntax.md": SPEC, "decoder/codec/parse/parse_a.cpp": PARSER, "decoder/codec/units/unit_reader.cpp": "",
+            "decoder/codec/parse/parse_b.h": 'r.flag("lcf_flag");\n',
+            "decoder/codec/parse/parse_b_test.cpp": 'expect("lcf_flag");\n'})
         self.assertEqual(len(found), 1, found)
         self.assertIn("2 parsers", found[0])
 
@@ -268,8 +268,8 @@ class Rules(TreeTest):
 
     def test_rule_without_check_in_the_validator(self):
         tools = "conformance/rlpcval/"
-        tree = {**self.tree(self.TEXT), "decoder/parse/parse_a.cpp": 'fail("R-ABC-01");\n',
-                tools + "validator.cpp": '#include "decoder/parse/parse_a.h"\n// "R-ABC-02"\n'}
+        tree = {**self.tree(self.TEXT), "decoder/codec/parse/parse_a.cpp": 'fail("R-ABC-01");\n',
+                tools + "validator.cpp": '#include "decoder/codec/parse/parse_a.h"\n// "R-ABC-02"\n'}
         self.assert_one(check_rules.check, tree, "R-ABC-02 has no check in rlpcval")
         self.assert_clean(check_rules.check, {**tree, tools + "validator_b.cpp": '"R-ABC-02"\n'})
 

@@ -83,65 +83,65 @@ class Layers(RealTree):
         self.assertEqual(check_layers.check(self.root)[0], [])
 
     def test_sides_never_include_each_other(self):
-        self.include("decoder/decoder.cpp", '#include "encoder/rlpc_encoder.h"', "must not include")
-        self.include("encoder/sequence/choices/gof_cuts.cpp", '#include "decoder/rlpc_decoder.h"',
+        self.include("decoder/rlpc_decoder.cpp", '#include "encoder/rlpc_encoder.h"', "must not include")
+        self.include("encoder/codec/sequence/choices/gof_cuts.cpp", '#include "decoder/rlpc_decoder.h"',
                      "must not include")
-        self.include("common/mesh/topology.cpp", '#include "decoder/slice_cut.h"',
+        self.include("common/codec/mesh/topology.cpp", '#include "decoder/codec/slice_cut.h"',
                      "must not include")
-        self.include("decoder/recon/hash_check.cpp",
-                     '#include "conformance/roundtrip/count_memory.h"', "must not include")
+        self.include("decoder/codec/gofs/hash_check.cpp",
+                     '#include "conformance/testing/count_memory.h"', "must not include")
 
     def test_parsing_includes_nothing_that_reconstructs(self):
-        for header in ("common/skinned_gof/recon/skinned_recon.h", "common/kernels/kernels.h",
-                       "common/cluster_gof/recon/lcf.h", "decoder/recon/gof_recon.h",
-                       "common/mesh_prediction/geometry_weights.h",
-                       "common/mesh/vertex_layers.h", "decoder/stream/unit_reader.h"):
+        for header in ("common/codec/kinds/skinned/recon/skinned_recon.h", "common/codec/kernels/kernels.h",
+                       "common/codec/kinds/cluster/recon/lcf.h", "decoder/codec/gofs/gof_recon.h",
+                       "common/codec/mesh_prediction/geometry_weights.h",
+                       "common/codec/mesh/vertex_layers.h", "decoder/codec/units/unit_reader.h"):
             with self.subTest(header=header):
-                self.include("decoder/parse/parse_skinned_gof.cpp", f'#include "{header}"', header)
+                self.include("decoder/codec/parse/parse_skinned_gof.cpp", f'#include "{header}"', header)
 
     def test_parsing_calls_nothing_that_reconstructs(self):
         for call in ("make_layers(n, triangles);", "make_recon(unit, context);",
                      "complete_influences(mesh, gof);", "make_lcf(a, b, c);"):
             with self.subTest(call=call):
-                self.complaint(check_layers.check, "decoder/parse/access_unit_parser.cpp",
+                self.complaint(check_layers.check, "decoder/codec/parse/access_unit_parser.cpp",
                                lambda text, call=call: text + f"void f() {{ {call} }}\n",
-                               "decoder/parse/access_unit_parser.cpp", "must not call")
+                               "decoder/codec/parse/access_unit_parser.cpp", "must not call")
 
     def test_files_of_meshes_know_nothing_of_coding(self):
-        self.include("encoder/input/formats/obj_reader.cpp", '#include "encoder/gof/gof_coder.h"',
+        self.include("encoder/meshes/obj/obj_reader.cpp", '#include "encoder/codec/spans/gof_coder.h"',
                      "must not include")
-        self.include("decoder/output/mesh_sink.cpp", '#include "decoder/rlpc_decoder.h"',
+        self.include("decoder/meshes/mesh_sink.cpp", '#include "decoder/rlpc_decoder.h"',
                      "must not include")
 
     def test_only_one_folder_of_common_works_with_files(self):
-        header = '#include "common/io/output_file.h"'
-        for name in ("common/mesh/topology.cpp", "common/skinned_gof/recon/skinned_recon.h",
-                     "decoder/parse/parse_gof_header.cpp", "decoder/recon/hash_check.cpp",
-                     "decoder/stream/stream_reader.cpp"):
+        header = '#include "common/files/output_file.h"'
+        for name in ("common/codec/mesh/topology.cpp", "common/codec/kinds/skinned/recon/skinned_recon.h",
+                     "decoder/codec/parse/parse_gof_header.cpp", "decoder/codec/gofs/hash_check.cpp",
+                     "decoder/codec/units/stream_reader.cpp"):
             with self.subTest(name=name):
                 self.include(name, header, "must not include")
-        self.include("common/io/output_file.h", '#include "decoder/slice_cut.h"',
+        self.include("common/files/output_file.h", '#include "decoder/codec/slice_cut.h"',
                      "must not include")
-        for name in ("decoder/parse/access_unit_parser.cpp", "decoder/recon/hash_check.cpp",
-                     "decoder/stream/stream_reader.cpp"):
+        for name in ("decoder/codec/parse/access_unit_parser.cpp", "decoder/codec/gofs/hash_check.cpp",
+                     "decoder/codec/units/stream_reader.cpp"):
             with self.subTest(name=name):
                 self.complaint(check_layers.check, name, lambda text: text + (
                     "void f() { float_position(grid, 0, 1); }\n"), name, "must not call")
 
     def test_other_libraries_stay_where_they_are(self):
-        self.include("decoder/recon/prefetch.cpp", "#include <Eigen/Dense>",
+        self.include("decoder/codec/gofs/prefetch.cpp", "#include <Eigen/Dense>",
                      "decoder/ must not use <Eigen/Dense>")
-        self.include("common/mesh/cut_border.cpp", "#include <fstream>", "no input or output")
-        self.include("common/mesh/cut_border.cpp", "#include <unistd.h>",
+        self.include("common/codec/mesh/cut_border.cpp", "#include <fstream>", "no input or output")
+        self.include("common/codec/mesh/cut_border.cpp", "#include <unistd.h>",
                      "only the standard library")
-        self.include("common/syntax/write_units.cpp", "#include <encoder/rlpc_encoder.h>",
+        self.include("common/codec/syntax/write_units.cpp", "#include <encoder/rlpc_encoder.h>",
                      "is ours")
 
     def test_there_is_no_way_round(self):
-        self.include("decoder/decoder.cpp", '#include "../encoder/rlpc_encoder.h"',
+        self.include("decoder/rlpc_decoder.cpp", '#include "../encoder/rlpc_encoder.h"',
                      "not spelled from the top")
-        self.include("decoder/decoder.cpp", "#include HEADER", "cannot be followed")
-        self.include("decoder/decoder.cpp", '#include "decoder/no_such.h"', "does not exist")
+        self.include("decoder/rlpc_decoder.cpp", "#include HEADER", "cannot be followed")
+        self.include("decoder/rlpc_decoder.cpp", '#include "decoder/no_such.h"', "does not exist")
 
     def test_links_follow_the_rule(self):
         self.complaint(check_layers.check, "decoder/CMakeLists.txt",
@@ -152,19 +152,19 @@ class Layers(RealTree):
                        "must not use Eigen")
 
     def test_public_headers_reach_only_the_standard_library(self):
-        self.complaint(check_layers.check, "decoder/slice_cut.h",
+        self.complaint(check_layers.check, "decoder/codec/slice_cut.h",
                        lambda text: text + "#include <CLI/CLI.hpp>\n",
-                       "decoder/slice_cut.h", "reaches <CLI/CLI.hpp>")
+                       "decoder/codec/slice_cut.h", "reaches <CLI/CLI.hpp>")
 
     def test_common_and_decoder_neither_throw_nor_catch(self):
-        for name, line in (("common/mesh/topology.cpp", "void f() { throw 1; }"),
-                           ("decoder/stream/unit_reader.cpp", "void f() try {} ALL"),
-                           ("decoder/recon/prefetch.cpp", "catch (...) {}")):
+        for name, line in (("common/codec/mesh/topology.cpp", "void f() { throw 1; }"),
+                           ("decoder/codec/units/unit_reader.cpp", "void f() try {} ALL"),
+                           ("decoder/codec/gofs/prefetch.cpp", "catch (...) {}")):
             with self.subTest(name=name):
                 self.complaint(check_layers.check, name, lambda t, l=line: l + "\n" + t,
                                f"{name}:1", "must neither throw nor catch")
-        for name, line in (("common/mesh/topology.cpp", "// throw"),
-                           ("common/mesh/topology_test.cpp", "void f() { throw 1; }"),
+        for name, line in (("common/codec/mesh/topology.cpp", "// throw"),
+                           ("common/codec/mesh/topology_test.cpp", "void f() { throw 1; }"),
                            ("decoder/c_api/rlpc_decode.cpp", "void f() { throw 1; }"),
                            ("encoder/c_api/rlpc_encode.cpp", "void f() { throw 1; }")):
             with self.subTest(name=name), self.planted(name, lambda t, l=line: l + "\n" + t):
@@ -173,13 +173,13 @@ class Layers(RealTree):
     def test_folders_are_rooms_and_rooms_are_folders(self):
         self.complaint(check_layers.check, "decoder/attic/a.h", lambda _: "#pragma once\n",
                        "decoder/attic/ has sources, but is not a room")
-        with self.without("decoder/extract"):
+        with self.without("decoder/codec/extract"):
             found = check_layers.check(self.root)[0]
-        self.assertIn("scripts/checks/rooms.py: decoder/extract/ has no sources", found)
+        self.assertIn("scripts/checks/rooms.py: decoder/codec/extract/ has no sources", found)
 
     def test_a_rule_about_calls_that_names_none_is_reported(self):
         before = rooms.NOT_CALLED
-        rooms.NOT_CALLED = {"decoder/parse": ("common/no_such_folder",)}
+        rooms.NOT_CALLED = {"decoder/codec/parse": ("common/no_such_folder",)}
         try:
             found = check_layers.check(self.root)[0]
         finally:
@@ -202,15 +202,15 @@ class Json(RealTree):
 
     def test_calls_of_the_library_are_found(self):
         for name, line in (
-                ("encoder/input/texels.cpp", "auto a = nlohmann::json::parse(text);"),
-                ("encoder/input/texels.cpp", "auto a = Json::parse(text, nullptr, false);"),
-                ("encoder/tools/encode_options.cpp", "bool a = nlohmann::ordered_json::accept(t);"),
-                ("decoder/output/stream_asset.cpp", "auto a = GltfJson::parse(text);"),
-                ("decoder/output/stream_asset.cpp", "bool a = GltfJson::sax_parse(text, &sax);"),
-                ("decoder/tools/rlpcdec.cpp", "auto a = remarks.dump(2);"),
-                ("decoder/tools/rlpcinfo_report.cpp", "std::cout << std::setw(2) << json << 1;"),
+                ("encoder/meshes/texels.cpp", "auto a = nlohmann::json::parse(text);"),
+                ("encoder/meshes/texels.cpp", "auto a = Json::parse(text, nullptr, false);"),
+                ("encoder/programs/rlpcenc/encode_options.cpp", "bool a = nlohmann::ordered_json::accept(t);"),
+                ("decoder/meshes/stream_asset.cpp", "auto a = GltfJson::parse(text);"),
+                ("decoder/meshes/stream_asset.cpp", "bool a = GltfJson::sax_parse(text, &sax);"),
+                ("decoder/programs/rlpcdec/rlpcdec.cpp", "auto a = remarks.dump(2);"),
+                ("decoder/programs/rlpcinfo/rlpcinfo_report.cpp", "std::cout << std::setw(2) << json << 1;"),
                 ("conformance/rlpcval/rlpcval.cpp", "std::cin >> json;"),
-                ("conformance/tools/rlpccmp.cpp", "using Tree = nlohmann::json; Tree::parse(t);")):
+                ("conformance/rlpccmp/rlpccmp.cpp", "using Tree = nlohmann::json; Tree::parse(t);")):
             with self.subTest(name=name, line=line):
                 self.assertTrue((self.root / name).is_file(), name)
                 self.complaint(check_json.check, name, lambda text, line=line: line + "\n" + text,
@@ -227,11 +227,11 @@ class Float(RealTree):
                        "floating point")
 
     def test_every_folder_of_integers_is_checked(self):
-        for name in ("common/mesh_prediction/value_prediction.cpp",
-                     "common/skinned_gof/recon/skinned_recon.h", "common/int_math.h",
-                     "decoder/parse/section_reader.h", "decoder/recon/hash_check.cpp",
-                     "decoder/stream/stream_reader.cpp",
-                     "decoder/extract/sub_stream_extractor.cpp"):
+        for name in ("common/codec/mesh_prediction/value_prediction.cpp",
+                     "common/codec/kinds/skinned/recon/skinned_recon.h", "common/codec/bits/int_math.h",
+                     "decoder/codec/parse/section_reader.h", "decoder/codec/gofs/hash_check.cpp",
+                     "decoder/codec/units/stream_reader.cpp",
+                     "decoder/codec/extract/sub_stream_extractor.cpp"):
             with self.subTest(name=name):
                 self.plant(name, "double x;")
 
@@ -239,21 +239,21 @@ class Float(RealTree):
         for line in ("float f();", "int r = std::sqrt(x);", "auto x = 0.5;", "auto x = 2.f;",
                      "auto x = 1e9;", "#include <cmath>"):
             with self.subTest(line=line):
-                self.plant("common/mesh/topology.h", line)
+                self.plant("common/codec/mesh/topology.h", line)
 
     def test_comments_literals_tests_and_writers_are_free(self):
-        for name, line in (("common/mesh/topology.h", "// a double, 0.5"),
-                           ("common/mesh/topology.cpp", 'const char* s = "float 1.5";'),
-                           ("common/mesh/topology_test.cpp", "double x;"),
-                           ("common/io/output_file.cpp", "double x;"),
-                           ("decoder/output/mesh_sink.cpp", "float y;")):
+        for name, line in (("common/codec/mesh/topology.h", "// a double, 0.5"),
+                           ("common/codec/mesh/topology.cpp", 'const char* s = "float 1.5";'),
+                           ("common/codec/mesh/topology_test.cpp", "double x;"),
+                           ("common/files/output_file.cpp", "double x;"),
+                           ("decoder/meshes/mesh_sink.cpp", "float y;")):
             with self.subTest(name=name), self.planted(name, lambda t, l=line: l + "\n" + t):
                 self.assertEqual(check_float.check(self.root)[0], [])
 
     def test_an_empty_folder_is_reported(self):
-        with self.without("decoder/stream"):
+        with self.without("decoder/codec/units"):
             found = check_float.check(self.root)[0]
-        self.assertEqual(found, ["decoder/stream/ has no sources"])
+        self.assertEqual(found, ["decoder/codec/units/ has no sources"])
 
 
 class HeadersFirst(RealTree):
@@ -261,13 +261,13 @@ class HeadersFirst(RealTree):
         self.assertEqual(check_headers_first.check(self.root)[0], [])
 
     def test_another_include_before_it(self):
-        self.complaint(check_headers_first.check, "encoder/write/write_stream.cpp",
+        self.complaint(check_headers_first.check, "encoder/codec/write/write_stream.cpp",
                        lambda text: "#include <vector>\n" + text,
-                       "encoder/write/write_stream.cpp", '"encoder/write/write_stream.h"')
+                       "encoder/codec/write/write_stream.cpp", '"encoder/codec/write/write_stream.h"')
 
 
 class Constants(RealTree):
-    SOURCE = "encoder/skinned_gof/search/bone_search.cpp"
+    SOURCE = "encoder/codec/kinds/skinned/search/bone_search.cpp"
 
     def plant(self, line, *expected, name=SOURCE):
         self.assertTrue((self.root / name).is_file(), name)
@@ -286,11 +286,11 @@ class Constants(RealTree):
                 self.plant(line, "kMagic says neither")
 
     def test_every_folder_of_the_search_is_checked(self):
-        for name in ("encoder/gof/component_cost.h", "encoder/sequence/target/target_search.cpp",
-                     "encoder/cluster_gof/cluster_gof_search.cpp",
-                     "encoder/skinned_gof/skinned_gof_coder.cpp",
-                     "encoder/skinned_gof/fit/bone_solver.cpp",
-                     "encoder/skinned_gof/quantise/temporal_values.cpp"):
+        for name in ("encoder/codec/spans/component_cost.h", "encoder/codec/sequence/target/target_search.cpp",
+                     "encoder/codec/kinds/cluster/cluster_gof_search.cpp",
+                     "encoder/codec/kinds/skinned/skinned_gof_coder.cpp",
+                     "encoder/codec/kinds/skinned/fit/bone_solver.cpp",
+                     "encoder/codec/kinds/skinned/quantise/temporal_values.cpp"):
             with self.subTest(name=name):
                 self.plant("constexpr double kMagic = 0.37;", "kMagic says neither", name=name)
 
@@ -316,10 +316,10 @@ class Constants(RealTree):
                        "bone_search.kGone is no tuned constant")
 
     def test_an_encoder_without_tags_is_told(self):
-        with self.without("encoder/skinned_gof"), self.without("encoder/cluster_gof"), \
-                self.without("encoder/frame_gof"), self.without("encoder/gof"), \
-                self.without("encoder/partition"), self.without("encoder/rest"), \
-                self.without("encoder/sequence"), self.without("encoder/attributes"):
+        with self.without("encoder/codec/kinds/skinned"), self.without("encoder/codec/kinds/cluster"), \
+                self.without("encoder/codec/kinds/inter"), self.without("encoder/codec/spans"), \
+                self.without("encoder/codec/partition"), self.without("encoder/codec/rest"), \
+                self.without("encoder/codec/sequence"), self.without("encoder/codec/attributes"):
             found = check_constants.check(self.root)[0]
         self.assertIn("no tuned constant is found: the check sees nothing", found)
 
@@ -330,12 +330,12 @@ class Specification(RealTree):
         self.assertEqual(check_rules.check(self.root)[0], [])
 
     def test_a_clause_that_does_not_exist(self):
-        self.complaint(check_clauses.check, "decoder/recon/hash_check.cpp",
+        self.complaint(check_clauses.check, "decoder/codec/gofs/hash_check.cpp",
                        lambda text: text + "// 8.99.7 No such process\n",
-                       "decoder/recon/hash_check.cpp", "8.99.7")
+                       "decoder/codec/gofs/hash_check.cpp", "8.99.7")
 
     def test_an_element_that_no_parser_reads(self):
-        with self.planted("decoder/parse/parse_gof_header.cpp",
+        with self.planted("decoder/codec/parse/parse_gof_header.cpp",
                           lambda text: text.replace('"first_frame"', '"frame"')):
             found = check_clauses.check(self.root)[0]
         self.assertEqual(len(found), 2, found)

@@ -5,9 +5,9 @@
 #
 # The shared ones export only rlpc_*, so that their internals can change. The static ones contain
 # all that they need of this project, and hide it from whoever links them.
-foreach(side common decoder encoder)
-  rlpc_sources(c_of_${side} ${side}/c_api)
-endforeach()
+rlpc_sources(c_of_common common/c_api common/memory)
+rlpc_sources(c_of_decoder decoder/c_api)
+rlpc_sources(c_of_encoder encoder/c_api)
 set(map ${PROJECT_SOURCE_DIR}/scripts/cmake/rlpc.map)
 
 # rlpc_c_library(NAME FILE SHARED|STATIC SOURCE...)
@@ -43,7 +43,7 @@ target_link_libraries(rlpc_static PRIVATE ZLIB::ZLIB Threads::Threads)
 # Without the writers of mesh files. Memory can come from callbacks, so containers are others, and
 # so is the namespace: programs may link the libraries in C++ as well.
 get_target_property(of_decoder rlpc_decoder SOURCES)
-list(FILTER of_decoder EXCLUDE REGEX "/decoder/output/")
+list(FILTER of_decoder EXCLUDE REGEX "/decoder/meshes/")
 get_target_property(of_common rlpc_common SOURCES)
 get_target_property(of_io rlpc_io SOURCES)
 list(FILTER of_io INCLUDE REGEX "/bounded_input\\.cpp$")

@@ -1,0 +1,58 @@
+// One GOF of a stream as parsed: the GOF unit, its slice or frame units, and its hash. Made by
+// AccessUnitParser (decoder/codec/parse), inspected by all programs, decoded by make_recon()
+// (decoder/codec/gofs/gof_recon.h).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "common/codec/kinds/cluster/cluster_gof.h"
+#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/kinds/skinned/skinned_gof.h"
+#include "common/codec/syntax/gof_hash.h"
+#include "common/codec/syntax/gof_header.h"
+#include "common/memory/owned.h"
+
+namespace rlpc {
+
+// A GOF of any kind.
+using AnyGof = std::variant<ClusterGof, SkinnedGof, FrameGof>;
+
+// 6.12 slice_unit( ), 6.14.2 frame_unit( )
+struct SliceEntry {
+  std::uint32_t component_group_idx = 0;
+  std::uint32_t layer_group_idx = 0;
+  std::uint32_t num_trajectories = 0;  // trajectories whose temporal values it contains
+  std::uint64_t bytes = 0;             // size of the unit
+  std::uint32_t temporal_layer_idx = 0;
+  std::uint32_t frame_idx = 0;   // of a frame unit: its first frame
+  std::uint32_t num_frames = 1;  // likewise
+  bool is_gof_end = false;       // the GOF ends before that frame; the unit has no residuals
+};
+
+// 7.14.2: those of the frames of a GOF that have one; empty if the GOF has none.
+using FrameCrcs = Vector<std::optional<FrameCrc>>;
+
+struct AccessUnit {
+  AnyGof gof;
+  Vector<SliceEntry> slices;    // in the order of the stream
+  std::optional<GofHash> hash;  // none: no hash unit, or not requested
+  std::uint64_t gof_bytes = 0;  // size of the GOF unit
+  // Slices were dropped on request (SliceCut): they are not among `slices`, and the hash does
+  // not match the remaining positions.
+  bool is_cut = false;
+
+  FrameCrcs frame_crcs() const {
+    FrameCrcs crcs;
+    const auto* const gof_of_frames = std::get_if<FrameGof>(&gof);
+    if (gof_of_frames == nullptr || !gof_of_frames->frame_hash_flag) return crcs;
+    for (const CodedFrame& frame : *gof_of_frames->frames) crcs.push_back(frame.frame_crc);
+    return crcs;
+  }
+  const GofHeader& header() const {
+    return std::visit([](const auto& g) -> const GofHeader& { return g; }, gof);
+  }
+};
+
+}  // namespace rlpc

@@ -1,0 +1,109 @@
+// 8.12 Bones: reconstructs rigid motions from residuals, in integers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "common/codec/bits/fixed_point.h"
+#include "common/codec/bits/int_math.h"
+#include "common/codec/components/series_predictor.h"
+#include "common/codec/components/track_order.h"
+#include "common/codec/kinds/skinned/skinned_gof.h"
+#include "common/codec/mesh/mesh.h"
+#include "common/memory/owned.h"
+
+namespace rlpc {
+
+// Unit quaternion w, x, y, z with 30 fractional bits.
+using Quaternion = std::array<std::int64_t, 4>;
+inline constexpr Quaternion kNoRotation{std::int64_t{1} << kQuaternionFractionBits, 0, 0, 0};
+
+inline constexpr int kOriginBits = 31;  // offsets and origins are clipped to this width
+
+// 8.12.1 StepOf( idx ), idx <= kMaxStepIdx; below 2^30.
+std::int64_t step_of(std::uint32_t idx);
+
+// 8.12.4 NormalizeQuaternion( q ): the unit quaternion along q; no rotation if q is zero.
+// |coordinates| < 2^56.
+Quaternion normalize_quaternion(Quaternion q);
+// 8.12.4 RotationAfter( p, q ): q followed by p, a unit quaternion; |coordinates of q| <= 2^30.
+Quaternion rotation_after(const Quaternion& p, const Quaternion& q);
+// 8.12.4 TurnedTowards( p, q ): whether that is -q rather than q.
+constexpr bool is_opposite(const Quaternion& p, const Quaternion& q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3] < 0;
+}
+// 8.12.4 AxesOf( q ): the images of the x, y and z axis.
+std::array<Vec3l, 3> axes_of(const Quaternion& q);
+
+// The pose of a bone in one frame.
+struct BonePose {
+  Quaternion rotation = kNoRotation;
+  std::array<Vec3l, 3> axes{};
+  Vec3l origin{};
+};
+
+struct BoneMotion {
+  std::int32_t parent = -1;  // index; -1: root
+  Vec3l pivot{};
+  Vector<BonePose> poses;  // [num_gof_frames]
+};
+
+// 8.12.3 Moved point; |point| < 2^31.
+Vec3l moved_point(const BonePose& pose, const Vec3l& pivot, const Vec3l& point);
+
+// 8.12.2 Motion of a bone: the rotation relative to the parent, and the offset of the origin,
+// as predicted at a place of a track of which the values at earlier places are known.
+// relative(f) returns a rotation, offset(f) a coordinate.
+template <class Relative>
+Quaternion predict_rotation(const Relative& relative, const TrackPlace& at, int order) {
+  if (at.frame == 0) return kNoRotation;
+  Quaternion sums{};
+  if (at.neighbours > 0) {
+    const Quaternion& before = relative(at.frame - at.stride);
+    for (std::size_t c = 0; c < 4; ++c) {
+      sums[c] = sum_of_neighbours(
+          [&](std::uint32_t f) {
+            const Quaternion& q = relative(f);
+            return is_opposite(before, q) ? -q[c] : q[c];
+          },
+          at);
+    }
+  } else {
+    for (std::size_t c = 0; c < 4; ++c) {
+      sums[c] = predict_series([&](std::uint32_t i) { return relative(i * at.stride)[c]; },
+                               at.frame / at.stride, order);
+    }
+  }
+  return normalize_quaternion(sums);
+}
+template <class Offset>
+std::int64_t predict_offset(const Offset& offset, const TrackPlace& at, int order) {
+  if (at.neighbours > 0) {
+    return round2(sum_of_neighbours(offset, at), at.neighbours == 2 ? 1 : 4);
+  }
+  return predict_series([&](std::uint32_t i) { return offset(i * at.stride); },
+                        at.frame / at.stride, order);
+}
+
+// The rotation and the coordinate of an offset that follow from a residual.
+Quaternion rotation_from(const Quaternion& predicted, const Vec3i& residual, std::int64_t step);
+constexpr std::int64_t offset_from(std::int64_t predicted, std::int32_t residual,
+                                   std::int64_t step) {
+  return clip_signed(kOriginBits, predicted + residual * step);
+}
+
+// The motion of a bone from its rotations relative to the parent and the offsets of its origin,
+// [num_gof_frames]. parent: null for a root.
+BoneMotion move_bone(const Bone& bone, const BoneMotion* parent,
+                     std::span<const Quaternion> relative, std::span<const Vec3l> offset);
+
+// The place in frame f to which the parent moves the pivot of a bone: its origin without an
+// offset.
+Vec3l carried_pivot(const Bone& bone, const BoneMotion* parent, std::uint32_t f);
+
+// Reconstructs all bones of a GOF.
+Vector<BoneMotion> recon_bones(std::span<const Bone> bones, std::uint32_t num_frames,
+                               int track_levels);
+
+}  // namespace rlpc

@@ -1,0 +1,231 @@
+#include "common/codec/kinds/skinned/recon/model_recon.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "common/codec/bits/int_math.h"
+#include "common/codec/kinds/skinned/influences.h"
+#include "common/codec/mesh_prediction/rest_recon.h"
+#include "common/memory/owned.h"
+#include "common/parallel/for_each.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::size_t kPadding = 3;  // kernels may read one vector past the end
+
+// The values of the factors of a group.
+struct ValueRecon {
+  const SkinnedModel& model;
+  std::span<const int> bits;  // [factor]
+  std::span<const std::int32_t> residuals;
+  const ValuePrediction& prediction;
+  AdaptiveWeights* weights;
+  bool is_rest;
+  std::span<std::int32_t> values;  // [num_vertices][factor]
+
+  // Vertices that follow each other in the order or, within a layer above the base, any.
+  void vertices(const CodedMesh& mesh, std::span<const std::uint32_t> list) const {
+    Vector<std::int64_t> predicted(bits.size());
+    std::optional<VertexAdaptation> adaptation;
+    if (weights != nullptr) adaptation.emplace(*weights);
+    for (const std::uint32_t v : list) {
+      const int layer_step = model.layer_step[mesh.layer_of(v)];
+      if (adaptation && adaptation->start(v, values)) {
+        adaptive_values(v, layer_step, *adaptation);
+      } else {
+        prediction.predict(v, values, predicted);
+        predicted_values(v, layer_step, predicted);
+      }
+    }
+  }
+
+ private:
+  void adaptive_values(std::uint32_t v, int layer_step, VertexAdaptation& adaptation) const {
+    const std::size_t n = bits.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::int64_t of_weights = adaptation.predict();
+      values[v * n + k] = clip_signed(
+          bits[k], of_weights + factor_difference(residuals[v * n + k], layer_step));
+      adaptation.add(of_weights, values[v * n + k]);
+    }
+    adaptation.finish();
+  }
+  void predicted_values(std::uint32_t v, int layer_step,
+                        std::span<const std::int64_t> predicted) const {
+    const std::size_t n = bits.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::int32_t residual = residuals[v * n + k];
+      const std::int64_t difference = is_rest ? rest_difference(model, residual, layer_step)
+                                              : factor_difference(residual, layer_step);
+      values[v * n + k] = clip_signed(bits[k], predicted[k] + difference);
+    }
+  }
+};
+
+}  // namespace
+
+// 8.10.2 Spatial values
+Vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel& model,
+                                  std::size_t group, int position_bits,
+                                  const ValuePrediction& prediction, AdaptiveWeights* weights) {
+  const FactorGroup factors = factor_group(model, group);
+  const Vector<std::int32_t>& residuals = model.vertex_residual[group];
+  Vector<int> bits(factors.size(), rest_bits(position_bits));
+  for (std::size_t k = 0; k < bits.size() && group > 0; ++k) {
+    bits[k] = model.trajectories[factors.first + k - kRestFactors].spatial_bits;
+  }
+  Vector<std::int32_t> values(residuals.size());
+  if (weights != nullptr) weights->start(factors.first - kRestFactors, bits.size());
+  ValueRecon recon{model, bits, residuals, prediction, weights, group == 0, values};
+  // Vertices of the base, or of a mesh without layers, are predicted from each other.
+  recon.vertices(mesh, mesh.vertices_of_layers(0, 1));
+  constexpr std::size_t kTogether = 16;  // vertices of a pass
+  for (std::uint32_t layer = 1; layer < mesh.num_layers(); ++layer) {
+    const std::span<const std::uint32_t> list = mesh.vertices_of_layers(layer, layer + 1);
+    for_ranges(list.size(), kTogether, [&](std::size_t first, std::size_t end) {
+      recon.vertices(mesh, list.subspan(first, end - first));
+    });
+  }
+  return values;
+}
+
+Vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedModel& model) {
+  Vector<Influences> influences = model.influences;
+  InfluencePrediction prediction(influences, static_cast<std::uint32_t>(model.bones.size()),
+                                 model.weight_bits);
+  std::uint32_t first = 0;
+  for (std::uint32_t j = 0; j < model.slice_layers[0]; ++j) first += model.layer_group_size[j];
+  for (const std::uint32_t v : mesh.vertices_of_layers(first, mesh.num_layers())) {
+    prediction.start(mesh.ring(v));
+    for (std::size_t k = 1; k < prediction.num_candidates(); ++k)
+      prediction.add_candidate(k, 0);
+    influences[v] = prediction.finish();
+  }
+  return influences;
+}
+
+ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
+                       bool has_more_groups)
+    : mesh_(mesh), position_bits_(position_bits) {
+  const Vector<std::int32_t> rest = recon_rest(model);
+  add_influences(model, rest);
+  if (has_more_groups || !model.trajectories.empty()) start_weights(model, rest);
+  factors_ = recon_factors(model, adaptive_ ? &*adaptive_ : nullptr);
+  if (has_more_groups) return;
+  weights_.reset();
+  adaptive_.reset();
+  rest_ = {};
+}
+
+ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
+                       std::span<const std::int32_t> values)
+    : mesh_(mesh), position_bits_(position_bits) {
+  add_influences(model, recon_rest(model));
+  auto factors = make_shared_owned<SpatialFactors>(num_vertices());
+  const std::size_t count = model.trajectories.size();
+  for (std::size_t l = 0; l < count; ++l) {
+    factors->add(values.subspan(l), model.trajectories[l].spatial_bits, count);
+  }
+  factors_ = std::move(factors);
+}
+
+Vector<std::int32_t> ModelRecon::recon_rest(const SkinnedModel& model) const {
+  if (!model.rest.order_flag) {
+    return recon_values(mesh_, model, 0, position_bits_, {mesh_, true, nullptr});
+  }
+  const RestOrder& order = mesh_.rest_order();
+  const RestRecon recon(order, model.rest, model.rest_step, position_bits_);
+  return rlpc::recon_rest(recon, order, model.vertex_residual[0], model.counterparts);
+}
+
+void ModelRecon::add_influences(const SkinnedModel& model, std::span<const std::int32_t> rest) {
+  const Vector<Influences> influences = complete_influences(mesh_, model);
+  // Exact, except for runs, of which there are usually fewer.
+  const std::size_t count = std::accumulate(
+      influences.begin(), influences.end(), std::size_t{0},
+      [](std::size_t sum, const Influences& of_vertex) { return sum + of_vertex.size; });
+  for (auto& list : arm_) list.reserve(count + kPadding);
+  weight_.reserve(count + kPadding);
+  place_.reserve(count);
+  runs_.reserve(count);
+  struct Entry {
+    Influence influence;
+    std::size_t vertex;
+  };
+  Vector<Entry> of_tile;
+  for (std::size_t first = 0; first < num_vertices(); first += kTileValues) {
+    of_tile.clear();
+    for (std::size_t v = first; v < std::min(first + kTileValues, num_vertices()); ++v) {
+      for (const Influence& influence : influences[v]) of_tile.push_back({influence, v});
+    }
+    std::sort(of_tile.begin(), of_tile.end(), [](const Entry& a, const Entry& b) {
+      return std::tie(a.influence.bone, a.vertex) < std::tie(b.influence.bone, b.vertex);
+    });
+    first_run_.push_back(runs_.size());
+    for (const auto& [influence, v] : of_tile) {
+      const auto next = static_cast<std::uint32_t>(weight_.size());
+      if (first_run_.back() == runs_.size() || runs_.back().bone != influence.bone) {
+        runs_.push_back({influence.bone, next, next});
+      }
+      ++runs_.back().end;
+      const Vec3i& pivot = model.bones[influence.bone].pivot;
+      for (std::size_t c = 0; c < 3; ++c) {
+        arm_[c].push_back(rest[3 * v + c] - pivot[c]);
+      }
+      weight_.push_back(influence.weight);
+      place_.push_back(static_cast<std::uint8_t>(v - first));
+    }
+  }
+  first_run_.push_back(runs_.size());
+  for (auto& list : arm_) list.resize(count + kPadding);
+  weight_.resize(count + kPadding);
+}
+
+void ModelRecon::start_weights(const SkinnedModel& model, std::span<const std::int32_t> rest) {
+  if (model.prediction != Prediction::kLayers) return;
+  for (auto& plane : rest_) plane.reserve(num_vertices());
+  for (std::size_t i = 0; i < rest.size(); ++i) rest_[i % 3].push_back(rest[i]);
+  const std::array<std::span<const std::int32_t>, 3> planes{rest_[0], rest_[1], rest_[2]};
+  weights_.emplace(mesh_, model.weights, planes);
+  if (model.weights.num_adaptive_factors > 0) {
+    adaptive_.emplace(mesh_, *weights_, model.weights, planes);
+  }
+}
+
+// Of the component groups from 1 on.
+std::shared_ptr<const SpatialFactors> ModelRecon::recon_factors(
+    const SkinnedModel& model, AdaptiveWeights* adaptive) const {
+  auto factors = make_shared_owned<SpatialFactors>(num_vertices());
+  const ValuePrediction prediction(mesh_, false, weights_ ? &*weights_ : nullptr);
+  for (std::size_t group = 1; group < model.group_end.size(); ++group) {
+    const FactorGroup of_group = factor_group(model, group);
+    const auto values = recon_values(mesh_, model, group, position_bits_, prediction, adaptive);
+    for (std::size_t k = 0; k < of_group.size(); ++k) {
+      factors->add(std::span(values).subspan(k),
+                   model.trajectories[of_group.first + k - kRestFactors].spatial_bits,
+                   of_group.size());
+    }
+  }
+  return factors;
+}
+
+// 8.16.2 GOF of tracks: the adaptive weights go on from those of the skinned model.
+std::shared_ptr<const SpatialFactors> ModelRecon::local_factors(const SkinnedGof& gof) const {
+  std::optional<AdaptiveWeights> adaptive = adaptive_;
+  return recon_factors(gof, adaptive ? &*adaptive : nullptr);
+}
+
+ModelRecon::Run ModelRecon::run(std::size_t tile, std::size_t i) const {
+  const RunRange& range = runs_[first_run_[tile] + i];
+  const std::size_t size = range.end - range.first;
+  return {range.bone,
+          {{&arm_[0][range.first], &arm_[1][range.first], &arm_[2][range.first]},
+           &weight_[range.first],
+           size},
+          std::span(place_).subspan(range.first, size)};
+}
+
+}  // namespace rlpc

@@ -1,0 +1,106 @@
+// 8.14 and 8.16.1: what has vertices in a skinned GOF or skinned model, reconstructed. It is
+// made once for all GOFs that share a skinned model, and only read after that.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "common/codec/kernels/component_sum.h"
+#include "common/codec/kernels/kernels.h"
+#include "common/codec/kinds/skinned/skinned_gof.h"
+#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh_prediction/adaptive_weights.h"
+#include "common/codec/mesh_prediction/value_prediction.h"
+#include "common/memory/owned.h"
+
+namespace rlpc {
+
+// 8.10.2 Spatial values: the contribution of a residual of rest positions, or of trajectories,
+// at a vertex of a layer.
+inline std::int64_t rest_difference(const SkinnedModel& model, std::int32_t residual,
+                                    int layer_step) {
+  return round2(std::int64_t{residual} * layer_step * model.rest_step, 4);
+}
+inline std::int64_t factor_difference(std::int32_t residual, int layer_step) {
+  return std::int64_t{residual} * layer_step;
+}
+
+// 8.10.2 Spatial values of the factors of a group, [num_vertices][factors]; without residuals
+// of layers whose slices are absent. weights: null if no factor is adaptive.
+Vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel& model,
+                                  std::size_t group, int position_bits,
+                                  const ValuePrediction& prediction,
+                                  AdaptiveWeights* weights = nullptr);
+
+// 8.14.1 AddAbsentInfluences( ): the influences of all vertices, predicted where the slice is
+// absent; [num_vertices].
+Vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedModel& model);
+
+class ModelRecon {
+ public:
+  // Influences of one bone on vertices of a tile.
+  struct Run {
+    std::uint32_t bone;
+    BoneArms arms;
+    std::span<const std::uint8_t> place;  // index of each vertex in its tile
+  };
+
+  // The mesh must outlive it; the model is read only during the call. has_more_groups: whether
+  // local_factors() will be called. Cannot fail.
+  ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
+             bool has_more_groups);
+  // The same where the spatial values of all trajectories are known,
+  // [num_vertices][trajectory].
+  ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
+             std::span<const std::int32_t> values);
+  ModelRecon(const ModelRecon&) = delete;
+  ModelRecon& operator=(const ModelRecon&) = delete;
+
+  const CodedMesh& mesh() const { return mesh_; }
+  std::size_t num_vertices() const { return mesh_.num_vertices(); }
+  int position_bits() const { return position_bits_; }
+  std::size_t num_tiles() const { return first_run_.size() - 1; }
+  std::size_t num_runs(std::size_t tile) const {
+    return first_run_[tile + 1] - first_run_[tile];
+  }
+  Run run(std::size_t tile, std::size_t i) const;
+  // Spatial factors of the trajectories.
+  const std::shared_ptr<const SpatialFactors>& factors() const { return factors_; }
+  // Those of the local component groups of a GOF of tracks.
+  std::shared_ptr<const SpatialFactors> local_factors(const SkinnedGof& gof) const;
+  // The weights with which local component groups begin; null: they do not adapt.
+  const AdaptiveWeights* adaptive_weights() const { return adaptive_ ? &*adaptive_ : nullptr; }
+
+ private:
+  struct RunRange {
+    std::uint32_t bone;
+    std::uint32_t first;
+    std::uint32_t end;
+  };
+
+  Vector<std::int32_t> recon_rest(const SkinnedModel& model) const;
+  void add_influences(const SkinnedModel& model, std::span<const std::int32_t> rest);
+  void start_weights(const SkinnedModel& model, std::span<const std::int32_t> rest);
+  std::shared_ptr<const SpatialFactors> recon_factors(const SkinnedModel& model,
+                                                      AdaptiveWeights* adaptive) const;
+
+  const CodedMesh& mesh_;
+  int position_bits_;
+  Vector<RunRange> runs_;
+  Vector<std::size_t> first_run_;  // [tiles + 1]
+  // Influences, by tile, then by bone:
+  std::array<Vector<std::int32_t>, 3> arm_;  // rest position relative to the pivot
+  Vector<std::int32_t> weight_;
+  Vector<std::uint8_t> place_;
+  std::shared_ptr<const SpatialFactors> factors_;
+  // For component groups to come:
+  std::array<Vector<std::int32_t>, 3> rest_;
+  std::optional<GeometryWeights> weights_;
+  std::optional<AdaptiveWeights> adaptive_;
+};
+
+}  // namespace rlpc

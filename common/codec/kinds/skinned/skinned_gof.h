@@ -1,0 +1,153 @@
+// 6.11 to 6.13: skinned GOFs and skinned models with their slices. Passed from the parser to
+// reconstruction, and from the analysis to the writer.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "common/codec/components/component_limits.h"
+#include "common/codec/components/track_order.h"
+#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/mesh.h"
+#include "common/codec/mesh/weight_settings.h"
+#include "common/codec/rest/rest_shape.h"
+#include "common/codec/syntax/gof_header.h"
+#include "common/memory/owned.h"
+
+namespace rlpc {
+
+inline constexpr std::uint32_t kMaxRestStep = 1U << 16;
+inline constexpr std::uint32_t kMaxComponentGroups = 255;
+inline constexpr std::uint32_t kMaxModels = 8;  // skinned models at a time
+inline constexpr int kMaxWeightBits = 7;
+inline constexpr std::uint32_t kMaxStepIdx = 239;
+inline constexpr int kMaxInfluences = 8;
+inline constexpr int kMaxExtraBones = 4;  // of a vertex
+inline constexpr int kMaxTemporalWeights = 3;
+inline constexpr int kTemporalWeightOffset = 256;
+// Values of temporal_predictor: the orders, then 1 to kMaxTemporalWeights weights.
+inline constexpr int kMaxTemporalPredictor = 7;
+
+// Residuals of a series of three coordinates, in steps; [num_gof_frames].
+using TrackResiduals = Vector<Vec3i>;
+
+struct Bone {
+  std::int32_t parent = -1;  // index of an earlier bone; -1: root
+  Vec3i pivot{};             // 1/16 grid units, signed, position_bits + 5 bits
+  bool rotation_flag = false;
+  std::uint32_t rotation_step_idx = 0;
+  int rotation_order = 1;    // 1 to kMaxPredictorOrder
+  int rotation_between = 0;  // 0 to kMaxBetween
+  TrackResiduals rotation_residual;
+  bool origin_flag = false;
+  std::uint32_t origin_step_idx = 0;
+  int origin_order = 0;    // 0 to kMaxPredictorOrder
+  int origin_between = 0;  // 0 to kMaxBetween
+  TrackResiduals origin_residual;
+
+  bool operator==(const Bone&) const = default;
+};
+
+struct Influence {
+  std::uint16_t bone = 0;
+  std::uint16_t weight = 0;  // above 0; the weights of a vertex sum to 2^weight_bits
+  bool operator==(const Influence&) const = default;
+};
+
+// At most kMaxInfluences, in the order in which they are coded.
+struct Influences {
+  std::array<Influence, kMaxInfluences> list{};
+  std::uint8_t size = 0;
+
+  const Influence* begin() const { return list.data(); }
+  const Influence* end() const { return list.data() + size; }
+  bool operator==(const Influences& other) const {
+    return std::equal(begin(), end(), other.begin(), other.end());
+  }
+};
+
+struct Trajectory {
+  int scale_idx = 0;
+  int spatial_bits = 1;
+  int temporal_bits = 1;
+  int temporal_predictor = 0;  // 0 to kMaxTemporalPredictor
+  int temporal_between = 0;    // 0 to kMaxBetween
+  std::array<std::int16_t, kMaxTemporalWeights> temporal_weight{};  // 6 fractional bits
+  TrackResiduals residual;
+  bool trajectory_flag = true;  // false: does not occur in the GOF, which has no other element
+
+  bool operator==(const Trajectory&) const = default;
+};
+
+// 6.13: what has vertices in a skinned GOF. In a skinned model, bones and trajectories are
+// without motion. Values of absent slices are zero; reconstruction then predicts the influences
+// (8.14.1).
+struct SkinnedModel {
+  int fraction_bits = 0;
+  int weight_bits = 0;
+  std::uint32_t rest_step = 1;  // 1/16 grid units
+  Prediction prediction = Prediction::kLayers;
+  WeightSettings weights;
+  RestSettings rest;
+  Vector<std::uint32_t> layer_group_size;  // [num_layer_groups] layers
+  Vector<std::uint8_t> layer_step;         // [layer], 1 to kMaxLayerStep
+  Vector<Bone> bones;
+  std::uint32_t num_component_groups = 0;
+  // [group], the end of each component group among the spatial factors; [0] is kRestFactors.
+  // Groups without any slice are absent.
+  Vector<std::size_t> group_end{kRestFactors};
+  Vector<std::uint32_t> slice_layers;  // [group], number of layer groups present
+  Vector<Trajectory> trajectories;
+  Vector<Influences> influences;  // [num_vertices]
+  // [num_vertices] if there are counterparts, otherwise empty
+  Vector<Counterpart> counterparts;
+  // [group][num_vertices * factors of the group]: residuals, in steps of the layer.
+  Vector<Vector<std::int32_t>> vertex_residual;
+  bool is_cut = false;  // slices were dropped on request (SliceCut)
+
+  bool operator==(const SkinnedModel&) const = default;
+};
+
+struct SkinnedGof : GofHeader, SkinnedModel {
+  SkinnedGof() { kind = GofKind::kSkinned; }
+
+  int track_levels = 0;         // of hierarchical tracks, besides level 0; 0 to kMaxTrackLevels
+  int num_temporal_layers = 1;  // 1 to track_levels + 1
+  // [group], the temporal layers besides the first of which it has a slice; empty if there are
+  // none in the GOF. Residuals of absent slices are zero.
+  Vector<std::uint32_t> temporal_layers;
+  // 6.13.1, of a GOF of tracks: the skinned model that it uses; null for other kinds. What has
+  // vertices is then there. The settings, bones and leading trajectories of the GOF are those
+  // of the model, with their motion; slice_layers counts the component groups of both; and
+  // group_end and vertex_residual are those of the local component groups, with [0] as the end
+  // of the last group of the model.
+  std::shared_ptr<const SkinnedModel> model;
+  std::uint32_t model_idx = 0;
+  std::uint32_t num_local_groups = 0;
+
+  bool operator==(const SkinnedGof&) const = default;
+};
+
+inline TrackFrames track_frames(const SkinnedGof& gof) {
+  return {gof.num_frames, gof.track_levels, gof.num_temporal_layers};
+}
+
+// Factors [first, end) of the spatial factors of a GOF or skinned model, as declared.
+struct FactorGroup {
+  std::size_t first = 0;
+  std::size_t end = kRestFactors;
+  std::size_t size() const { return end - first; }
+};
+inline FactorGroup factor_group(const SkinnedModel& model, std::size_t group) {
+  return {group == 0 ? 0 : model.group_end[group - 1], model.group_end[group]};
+}
+
+// 8.16.1: what FactorsOfModels( ) counts for a skinned model.
+inline std::uint64_t num_factors(const SkinnedModel& model) {
+  return (kRestFactors + model.trajectories.size()) * model.influences.size();
+}
+
+}  // namespace rlpc

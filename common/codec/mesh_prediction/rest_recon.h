@@ -1,0 +1,55 @@
+// 8.18.6 Reconstruction
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/codec/mesh/mesh.h"
+#include "common/codec/mesh/rest_order.h"
+#include "common/codec/mesh_prediction/rest_prediction.h"
+#include "common/codec/rest/counterparts.h"
+#include "common/codec/rest/rest_shape.h"
+#include "common/memory/owned.h"
+
+namespace rlpc {
+
+// 8.18.6 Reconstruction: PredictFromCounterpart( v, hinges, axes ); also gives these axes.
+Vec3l predict_from_counterpart(const RestPrediction& predictor, const HingePairs& pairs,
+                               RestAxes& axes);
+
+// Vertex by vertex, so that the encoder predicts from the values that the decoder will have.
+class RestRecon {
+ public:
+  // order must outlive it. rest_step: 1/16 grid units.
+  RestRecon(const RestOrder& order, const RestSettings& settings, std::uint32_t rest_step,
+            int position_bits);
+
+  // Prediction and axes of v. counterparts: the pairs with its counterpart; null: none.
+  void start(std::uint32_t v, const HingePairs* counterparts);
+  const Vec3l& prediction() const { return prediction_; }
+  const RestAxes& axes() const { return axes_; }
+  // The value with these residuals, along the axes.
+  void finish(const Vec3i& residual);
+
+  // [num_vertices][3]
+  Vector<std::int32_t>& values() { return values_; }
+
+ private:
+  const RestOrder& order_;
+  RestSettings settings_;
+  std::int64_t rest_step_;
+  int bits_;
+  Vector<std::int32_t> values_;
+  // Of the current vertex:
+  std::uint32_t v_ = 0;
+  Vec3l prediction_{};
+  RestAxes axes_{};
+};
+
+// 8.18.6 Reconstruction: ReconstructRest( ): all vertices, with their residuals, [num_vertices]
+// [3], and counterparts, [num_vertices] or empty. Positions, [num_vertices][3].
+Vector<std::int32_t> recon_rest(RestRecon recon, const RestOrder& order,
+                                std::span<const std::int32_t> residuals,
+                                std::span<const Counterpart> counterparts);
+
+}  // namespace rlpc

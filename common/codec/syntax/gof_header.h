@@ -1,0 +1,46 @@
+// 6.5 gof( ): the beginning of every kind of GOF.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/codec/syntax/sequence_header.h"
+#include "common/codec/syntax/stream_format.h"
+
+namespace rlpc {
+
+// 7.5: gof_kind
+enum class GofKind : std::uint8_t {
+  kClusters,  // 6.5: clusters in local coordinate frames
+  kSkinned,   // 6.11: bones, and trajectories for the residual
+  kTracks,    // 6.13.1: the same, with the vertices of a skinned model
+  kFrames,    // 6.14: frames predicted from frames
+};
+
+// The adjective of a kind, for messages: "a cluster GOF".
+constexpr const char* kind_name(GofKind kind) {
+  if (kind == GofKind::kFrames) return "frame";
+  return kind == GofKind::kClusters ? "cluster" : "skinned";
+}
+
+// Table 7-1: the type of the units that may follow the GOF unit in its access unit, other than
+// its hash: slice units or frame units. None: there are no such units.
+constexpr std::optional<UnitType> slice_type(GofKind kind) {
+  if (kind == GofKind::kClusters) return std::nullopt;
+  return kind == GofKind::kFrames ? UnitType::kFrame : UnitType::kSlice;
+}
+constexpr bool has_slices(GofKind kind) { return slice_type(kind).has_value(); }
+// 6.1 IsLive( ): whether frames of a GOF are output before it ends.
+constexpr bool is_live(const SequenceHeader& header, GofKind kind) {
+  return header.open_end_flag && kind == GofKind::kFrames;
+}
+
+struct GofHeader {
+  GofKind kind = GofKind::kClusters;
+  std::uint32_t first_frame = 0;
+  std::uint32_t num_frames = 1;
+
+  bool operator==(const GofHeader&) const = default;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,50 @@
+// The time of clips (7.3, 7.15): frame k of a clip is its pose k intervals after its start, an
+// interval being the reciprocal of the frame rate. n frames take n - 1 intervals; where a clip
+// repeats, its end is the start of the next turn. Times are rounded: what is within a millionth
+// of an interval of a frame, or of the middle between two, counts as being there. The
+// JavaScript package has the same rules (decoder/web/package/src/clip_time.js).
+#pragma once
+
+#include <cstdint>
+
+#include "common/codec/mesh/mesh.h"
+
+namespace rlpc {
+
+// Seconds from the first to the last of so many frames, num_frames >= 1.
+inline double clip_seconds(FrameRate frame_rate, std::uint32_t num_frames) {
+  return static_cast<double>(num_frames - 1) * frame_rate.denominator / frame_rate.numerator;
+}
+
+inline constexpr double kExactPlace = 1e-6;  // intervals
+
+// The frame that is nearest to a place, which is 0 or greater, and below 2^32 - 1.
+inline std::uint32_t nearest_frame(double place) {
+  return static_cast<std::uint32_t>(place + (0.5 + kExactPlace));
+}
+
+// A place, or that of the frame to which it is equal but for rounding.
+inline double exact_place(double place) {
+  const double frame = nearest_frame(place);
+  const double off = place - frame;
+  return off < kExactPlace && off > -kExactPlace ? frame : place;
+}
+
+// Where a clip of num_frames >= 1 frames is after so many seconds: from 0, its first frame, to
+// num_frames - 1, its last; between frames, with a fraction. seconds: not a NaN; below 0 is 0.
+inline double clip_place(FrameRate frame_rate, std::uint32_t num_frames, double seconds,
+                         bool repeats) {
+  constexpr double kMost = 0x1p53;  // where doubles have no fraction left
+  const double last = static_cast<double>(num_frames) - 1.0;
+  double place = seconds * frame_rate.numerator / frame_rate.denominator;
+  if (!(place > 0.0) || last == 0.0) return 0.0;
+  if (place > kMost) place = kMost;
+  if (!repeats) return place < last ? exact_place(place) : last;
+  // Not fmod: the decoder's library needs no mathematical functions.
+  place -= last * static_cast<double>(static_cast<std::uint64_t>(place / last));
+  if (place < 0.0) return 0.0;
+  place = exact_place(place);
+  return place >= last ? 0.0 : place;
+}
+
+}  // namespace rlpc

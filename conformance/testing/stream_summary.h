@@ -1,0 +1,23 @@
+// The summary of a stream, for tests.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "decoder/codec/units/gof_summary.h"
+#include "decoder/codec/units/stream_reader.h"
+
+namespace rlpc {
+
+// An empty one if the stream cannot be read, which fails the test.
+inline StreamSummary summary_of(const std::vector<std::uint8_t>& stream) {
+  StreamReader reader(memory_source(stream), {});
+  EXPECT_TRUE(reader.open());
+  const auto summary = summarise_all(reader);
+  EXPECT_TRUE(summary);
+  return summary ? *summary : StreamSummary();
+}
+
+}  // namespace rlpc

@@ -1,0 +1,33 @@
+#include "decoder/codec/gofs/coarse_output.h"
+
+#include <cassert>
+#include <cstddef>
+#include <utility>
+
+#include "common/codec/mesh/coarse_mesh.h"
+
+namespace rlpc {
+
+CoarseOutput::CoarseOutput(std::uint32_t num_vertices, std::span<const Triangle> triangles,
+                           std::span<const std::uint32_t> vertex_order, std::uint32_t layers) {
+  const auto meshes = CoarseMeshes::of_output(num_vertices, triangles, vertex_order);
+  CoarseMesh mesh = meshes.mesh(layers, vertex_order);
+  num_layers_ = meshes.num_layers();
+  decoded_ = std::move(mesh.vertices);
+  triangles_ = std::move(mesh.triangles);
+  vertices_ = decoded_;
+  if (vertex_order.empty()) return;
+  for (std::uint32_t& v : vertices_) v = vertex_order[v];
+}
+
+void CoarseOutput::pick(std::span<const std::int32_t> decoded,
+                        std::span<std::int32_t> positions) const {
+  assert(positions.size() == 3 * decoded_.size());
+  for (std::size_t i = 0; i < decoded_.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      positions[3 * i + c] = decoded[3 * std::size_t{decoded_[i]} + c];
+    }
+  }
+}
+
+}  // namespace rlpc

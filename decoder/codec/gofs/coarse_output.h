@@ -1,0 +1,33 @@
+// 8.9.8 Coarse meshes: the coarse mesh of a stream in output order, and its positions.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/codec/mesh/mesh.h"
+#include "common/memory/owned.h"
+
+namespace rlpc {
+
+class CoarseOutput {
+ public:
+  // triangles: of the whole mesh, in output order; vertex_order: of the stream (8.6.1), empty
+  // if it has none; layers: that stay, at least 1. All are read only during the call.
+  CoarseOutput(std::uint32_t num_vertices, std::span<const Triangle> triangles,
+               std::span<const std::uint32_t> vertex_order, std::uint32_t layers);
+
+  std::uint32_t num_layers() const { return num_layers_; }  // of the whole mesh
+  // Output indices in the whole mesh, ascending.
+  std::span<const std::uint32_t> vertices() const { return vertices_; }
+  std::span<const Triangle> triangles() const { return triangles_; }
+  // decoded: all vertices, in decoded order; positions: [vertices().size()][3]
+  void pick(std::span<const std::int32_t> decoded, std::span<std::int32_t> positions) const;
+
+ private:
+  std::uint32_t num_layers_ = 1;
+  Vector<std::uint32_t> decoded_;   // decoded indices, in output order
+  Vector<std::uint32_t> vertices_;  // [as decoded_]
+  Vector<Triangle> triangles_;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,45 @@
+// Reconstructs several frames of a GOF together, on one or more threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "common/memory/owned.h"
+#include "decoder/codec/gofs/gof_recon.h"
+
+namespace rlpc {
+
+// Frames per thread and pass: factors are read from memory once for all of them.
+inline constexpr std::uint32_t kBandFrames = 4;
+
+// Where frames are taken next, seen from the last one.
+enum class Direction : std::uint8_t { kForward, kBack, kElsewhere };
+
+// Reconstructs one band per thread, of frames that come next in either direction; elsewhere,
+// starts with a single frame and doubles.
+class FrameBand {
+ public:
+  explicit FrameBand(std::uint32_t threads)
+      : most_(kBandFrames * threads), next_count_(most_) {}
+
+  // Drops the frames held, because another GOF follows.
+  void clear() { count_ = 0; }
+  // Of the next call of frame().
+  void turn(Direction direction);
+  // Frame f of the GOF in decoded order, frame_size values; valid until the next call.
+  std::span<const std::int32_t> frame(const GofRecon& recon, std::uint32_t f,
+                                      std::size_t frame_size);
+
+ private:
+  void fill(const GofRecon& recon, std::uint32_t f, std::size_t frame_size);
+
+  std::uint32_t most_;
+  std::uint32_t next_count_;
+  bool is_back_ = false;
+  std::uint32_t first_ = 0;
+  std::uint32_t count_ = 0;
+  Vector<std::int32_t> positions_;  // [count_][frame_size]
+};
+
+}  // namespace rlpc

@@ -1,0 +1,52 @@
+// Reconstructs GOFs of frames, which are decoded in order.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/kinds/inter/recon/frame_recon.h"
+#include "common/memory/owned.h"
+#include "decoder/codec/gofs/gof_recon.h"
+
+namespace rlpc {
+
+// Keeps the last frame, as many before it as keep_frames() says, and those that have been
+// decoded before their turn. An earlier one begins with the GOF again, unless frames are
+// independent.
+class OrderedRecon final : public GofRecon {
+ public:
+  // The mesh must outlive it.
+  OrderedRecon(const CodedMesh& mesh, FrameGof gof, int position_bits)
+      : mesh_(mesh),
+        gof_(std::move(gof)),
+        order_(gof_.pattern, gof_.num_frames),
+        position_bits_(position_bits) {}
+
+  std::uint32_t num_frames() const override { return gof_.num_frames; }
+  bool is_ordered() const override { return true; }
+  void frames(std::uint32_t first, std::uint32_t count,
+              std::span<std::int32_t> positions) const override;
+  void keep_frames(std::uint32_t count) override { num_kept_ = count; }
+  void make_ready(std::uint32_t f) const override;
+
+ private:
+  bool can_go_back_to(std::uint32_t place) const;
+  void go_to(std::uint32_t frame) const;
+
+  const CodedMesh& mesh_;
+  FrameGof gof_;
+  FrameOrder order_;
+  int position_bits_;
+  std::uint32_t num_kept_ = 0;
+  mutable std::mutex decoding_;
+  mutable std::optional<FrameRecon> recon_;
+  // [frame]: positions of the last one asked for, of those kept before it, and of later ones
+  // that have been decoded.
+  mutable Map<std::uint32_t, Vector<std::int32_t>> decoded_;
+};
+
+}  // namespace rlpc

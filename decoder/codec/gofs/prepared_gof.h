@@ -1,0 +1,34 @@
+// A GOF that is ready to give its frames: its reconstruction, and what its frames are compared
+// with.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "common/codec/kinds/access_unit.h"
+#include "common/codec/syntax/stream_context.h"
+#include "decoder/codec/gofs/gof_recon.h"
+#include "decoder/codec/gofs/model_recons.h"
+
+namespace rlpc {
+
+struct PreparedGof {
+  GofHeader header;
+  std::optional<GofHash> hash;
+  FrameCrcs frame_crcs;
+  bool is_cut = false;
+  std::unique_ptr<GofRecon> recon;
+  // That it uses; as long as it is there, so is its reconstruction.
+  std::shared_ptr<const SkinnedModel> model;
+  // An upper bound of the memory that this keeps, with the frames that it may keep and without
+  // the model.
+  std::uint64_t memory_bytes = 0;
+  std::uint64_t frame_bytes = 0;  // of it, the frames
+};
+
+// max_frame_bytes: of decoded frames that a GOF of frames keeps for the way back.
+PreparedGof prepare(AccessUnit access_unit, const StreamContext& context, ModelRecons& models,
+                    std::uint64_t max_frame_bytes);
+
+}  // namespace rlpc

@@ -1,0 +1,65 @@
+// Builds an access unit from its units, one by one. The only place that knows how each
+// kind of GOF is parsed; all readers of streams hand their units to it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "common/codec/bits/bit_reader.h"
+#include "common/codec/kinds/access_unit.h"
+#include "common/codec/kinds/skinned/model_slots.h"
+#include "common/codec/syntax/stream_context.h"
+#include "common/result.h"
+#include "decoder/codec/parse/memory_limit.h"
+#include "decoder/codec/slice_cut.h"
+
+namespace rlpc {
+
+class GofParser;  // of one kind
+
+// Every size is checked against the level, and the memory it needs against the limit,
+// before anything is allocated. After an error it can only be destroyed.
+class AccessUnitParser {
+ public:
+  // The context must outlive it, and have its connectivity set. Slices outside the cut are
+  // treated as absent.
+  AccessUnitParser(const StreamContext& context, const MemoryLimit& memory,
+                   const SliceCut& cut = {});
+  ~AccessUnitParser();
+
+  // Each `r` covers exactly the payload of a unit; unit_bytes: of the unit with header and CRC.
+  //
+  // 6.5 gof( ), once. first_frame: the first frame that the GOF must have. models: the skinned
+  // models alive.
+  Result<bool> gof(BitReader& r, std::uint32_t first_frame, const ModelSlots& models,
+                   std::uint64_t unit_bytes);
+  // The type of the units that may follow; none: there are no such units.
+  std::optional<UnitType> slice_type() const { return rlpc::slice_type(kind_); }
+  bool has_slices() const { return rlpc::has_slices(kind_); }
+  // Whether the cut drops the slice whose unit begins with `r`, which then need not be parsed.
+  bool drops(BitReader& r);
+  // 6.12 slice_unit( ) or 6.14.2 frame_unit( ), any number of times. unit_bit_pos: of the unit.
+  Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos, std::uint64_t unit_bytes);
+  // 6.7 gof_hash( ), at most once.
+  Result<bool> hash(BitReader& r);
+
+  // Estimated memory of what has been parsed so far, and of the skinned models alive; 0 before
+  // the GOF unit.
+  std::uint64_t memory_bytes() const;
+  // After the last unit.
+  AccessUnit finish();
+
+ private:
+  std::unique_ptr<GofParser> make_parser() const;
+
+  const StreamContext& context_;
+  MemoryLimit memory_;
+  SliceCut cut_;
+  std::uint32_t num_frames_ = 0;
+  GofKind kind_ = GofKind::kClusters;
+  std::unique_ptr<GofParser> parser_;
+  AccessUnit access_unit_;
+};
+
+}  // namespace rlpc

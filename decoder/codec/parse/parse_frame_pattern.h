@@ -1,0 +1,12 @@
+// 6.14.1 Frame pattern, parsing side.
+#pragma once
+
+#include "common/codec/bits/bit_reader.h"
+#include "common/codec/kinds/inter/frame_order.h"
+
+namespace rlpc {
+
+// Errors are left in `r`.
+FramePattern parse_frame_pattern(BitReader& r);
+
+}  // namespace rlpc

@@ -1,0 +1,20 @@
+// 6.5 gof( ), up to the part specific to its kind, parsing side.
+#pragma once
+
+#include <cstdint>
+
+#include "common/codec/bits/bit_reader.h"
+#include "common/codec/syntax/gof_header.h"
+#include "common/codec/syntax/sequence_header.h"
+
+namespace rlpc {
+
+// The first element of a GOF unit, which says after damage where decoding goes on. Errors are
+// left in `r`.
+std::uint32_t parse_first_frame(BitReader& r, Range range);
+
+// expected_first_frame: below num_frames of the sequence. Errors are left in `r`.
+GofHeader parse_gof_header(BitReader& r, const SequenceHeader& header,
+                           std::uint32_t expected_first_frame);
+
+}  // namespace rlpc

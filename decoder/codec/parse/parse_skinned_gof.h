@@ -1,0 +1,143 @@
+// 6.11 to 6.13: skinned GOFs, skinned models and their slices, parsing side.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "common/codec/bits/bit_reader.h"
+#include "common/codec/kinds/access_unit.h"
+#include "common/codec/kinds/skinned/model_slots.h"
+#include "common/codec/kinds/skinned/skinned_gof.h"
+#include "common/codec/kinds/skinned/slice_models.h"
+#include "common/codec/mesh/coded_meshes.h"
+#include "common/codec/syntax/sequence_header.h"
+#include "common/memory/owned.h"
+#include "common/result.h"
+#include "decoder/codec/parse/memory_limit.h"
+#include "decoder/codec/slice_cut.h"
+
+namespace rlpc {
+
+class SectionReader;
+
+// Of a skinned model unit, or of a GOF of tracks.
+std::uint32_t parse_model_idx(BitReader& r);
+
+// The unit of a skinned GOF or skinned model and the slice units after it, one by one. Every
+// size is checked against the level, and the memory it needs against the limit, before
+// anything is allocated. Slices outside the cut are treated as absent.
+class SkinnedGofParser {
+ public:
+  // All must outlive it.
+  SkinnedGofParser(const SequenceHeader& header, const CodedMeshes& meshes,
+                   const MemoryLimit& memory, const SliceCut& cut = {})
+      : header_(header), meshes_(meshes), memory_(memory), cut_(cut) {}
+
+  // One of these three begins: the rest of the payload of a unit, to which `r` ends. models:
+  // those alive.
+  //
+  // 6.11 bones_of_gof( )
+  Result<bool> bones(BitReader& r, const GofHeader& gof_header, const ModelSlots& models = {});
+  // 6.13.1 tracks_of_gof( )
+  Result<bool> tracks(BitReader& r, const GofHeader& gof_header, const ModelSlots& models);
+  // 6.13 model( )
+  Result<bool> model(BitReader& r, const ModelSlots& models);
+
+  // Whether the cut drops the slice whose unit begins with `r`, which then need not be parsed.
+  bool drops(BitReader& r);
+  // 6.12 slice_unit( ). unit_bit_pos: of the slice unit.
+  Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos);
+
+  // After the last slice, of a GOF or of a skinned model.
+  SkinnedGof finish() { return std::move(gof_); }
+  std::shared_ptr<const SkinnedModel> finish_model();
+  std::uint32_t model_idx() const { return gof_.model_idx; }
+
+  // The slice that the last slice() parsed; none if the cut drops it.
+  const std::optional<SliceEntry>& last_slice() const { return last_slice_; }
+  // Whether a slice has been dropped so far.
+  bool is_cut() const { return gof_.is_cut; }
+  // Estimated memory of what has been parsed so far, and of the skinned models alive.
+  std::uint64_t memory_bytes() const { return memory_bytes_; }
+
+ private:
+  class SliceParser;
+  enum class Unit : std::uint8_t { kGof, kModel, kTracks };
+
+  Result<bool> rig(BitReader& r);
+  void rig_header(BitReader& r);
+  void levels_of_tracks(BitReader& r);
+  void start_temporal_layers();
+  void layers(BitReader& r);
+  void load_model();
+  void bone_section(BitReader& r);
+  void track_section(BitReader& r);
+  // Before a section is parsed that adds to them: counts spatial factors of all vertices,
+  // values of tracks, and the memory for both.
+  struct Factors {
+    std::uint64_t spatial = 0;
+    std::uint64_t of_tracks = 0;
+  };
+  std::uint64_t factors_of_bones() const {
+    return 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames;
+  }
+  void count_factors(SectionReader& section, const Factors& factors, const char* element);
+  // Whether slices of the group have tracks and no vertices: those are in the skinned model.
+  bool has_only_tracks(std::uint32_t group) const {
+    return unit_ == Unit::kTracks && group <= gof_.num_component_groups;
+  }
+  // The trajectories of a component group of the GOF or of its skinned model, from 1 on.
+  FactorGroup tracks_of(std::uint32_t group) const {
+    return has_only_tracks(group) ? factor_group(*gof_.model, group)
+                                  : factor_group(gof_, own_group(group));
+  }
+  // Index of a component group among those that have vertices here.
+  std::size_t own_group(std::uint32_t group) const {
+    return unit_ == Unit::kTracks ? group - gof_.num_component_groups : group;
+  }
+  std::uint32_t temporal_layers(std::uint32_t group) const;
+  SliceEntry slice_header(BitReader& r) const;
+  bool may_follow(const SliceEntry& slice) const;
+
+  const SequenceHeader& header_;
+  const CodedMeshes& meshes_;
+  MemoryLimit memory_;
+  SliceCut cut_;
+  const CodedMesh* mesh_ = nullptr;
+  Unit unit_ = Unit::kGof;
+  SkinnedGof gof_;  // or skinned model
+  std::uint64_t num_factors_ = 0;
+  std::uint64_t memory_bytes_ = 0;
+  // From slice to slice (9.8.1).
+  struct SliceState {
+    void start(std::uint32_t num_frames, std::uint32_t first_group);
+
+    std::uint32_t first_own_group = 1;
+    SliceModels models;
+    Trajectory previous;  // header of the previous trajectory
+    Vector<std::uint32_t> trajectory_mean;
+    std::shared_ptr<VertexModels> vertex_models;
+    std::shared_ptr<VertexModels> models_of_group;
+    std::optional<VertexContexts> contexts;  // of the current group
+    std::uint32_t last_group = 0;
+    std::uint32_t last_temporal_layer = 0;
+  };
+  SliceState state_;
+  // Groups from these on are dropped.
+  struct CutGroups {
+    std::uint32_t end_component_group = 0;
+    std::uint32_t end_layer_group = 0;
+    std::uint32_t end_temporal_layer = 0;
+    bool has(const SliceEntry& slice) const {
+      return slice.component_group_idx < end_component_group &&
+             slice.layer_group_idx < end_layer_group &&
+             slice.temporal_layer_idx < end_temporal_layer;
+    }
+  };
+  CutGroups kept_;
+  std::optional<SliceEntry> last_slice_;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,17 @@
+// zlib streams within payloads (4.5).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "common/memory/owned.h"
+
+namespace rlpc {
+
+// inflates_to( ): the bytes that exactly one zlib stream inflates to; none unless they are
+// `size`. Allocates size + 1 bytes.
+std::optional<String> inflate_exactly(std::span<const std::uint8_t> deflated,
+                                      std::uint32_t size);
+
+}  // namespace rlpc

@@ -1,0 +1,34 @@
+// 6.8 End of sequence, parsing side.
+#pragma once
+
+#include <cstdint>
+
+#include "common/codec/bits/bit_reader.h"
+#include "common/codec/syntax/sequence_header.h"
+
+namespace rlpc {
+
+struct EndOfSequence {
+  std::uint32_t index_distance = 0;  // from the start of the GOF index, bytes; 0: there is none
+  std::uint32_t num_frames = 0;      // of the sequence
+};
+
+inline EndOfSequence parse_end_of_sequence(BitReader& r, const SequenceHeader& header) {
+  EndOfSequence end{r.u(32, "index_distance"), header.num_frames};
+  if (header.open_end_flag) {
+    const std::uint64_t at = r.bit_pos();
+    end.num_frames = r.u(32, "num_sequence_frames");
+    if (!r.error() && end.num_frames > kMaxFrames) {
+      r.fail(Errc::kInvalid, "R-LVL-03", "num_sequence_frames", at);
+    }
+  }
+  r.expect_end();
+  return end;
+}
+
+// Bytes of the payload.
+constexpr std::uint32_t end_of_sequence_bytes(const SequenceHeader& header) {
+  return header.open_end_flag ? 8 : 4;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,32 @@
+// 6.9 GOF index, parsing side.
+#pragma once
+
+#include <cstdint>
+
+#include "common/codec/bits/bit_reader.h"
+#include "common/codec/syntax/sequence_header.h"
+#include "common/memory/owned.h"
+#include "common/result.h"
+
+namespace rlpc {
+
+struct GofLocation {
+  std::uint64_t offset = 0;  // of the GOF unit, bytes from the start of the stream
+  std::uint32_t first_frame = 0;
+};
+
+// Of a skinned model unit.
+struct ModelLocation {
+  std::uint64_t offset = 0;
+  std::uint32_t model_idx = 0;
+};
+
+struct GofIndex {
+  Vector<GofLocation> gofs;
+  Vector<ModelLocation> models;
+};
+
+// Offsets are not checked against the units here.
+Result<GofIndex> parse_gof_index(BitReader& r, const SequenceHeader& header);
+
+}  // namespace rlpc

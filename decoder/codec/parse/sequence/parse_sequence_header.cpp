@@ -1,0 +1,60 @@
+#include "decoder/codec/parse/sequence/parse_sequence_header.h"
+
+#include "common/codec/syntax/stream_format.h"
+
+namespace rlpc {
+namespace {
+
+// A profile or level that this version does not define is unsupported, not invalid.
+void expect_supported(BitReader& r, bool supported, const char* rule, const char* element,
+                      std::uint64_t at) {
+  if (!r.error() && !supported) r.fail(Errc::kUnsupported, rule, element, at);
+}
+
+}  // namespace
+
+// 6.3 sequence_header( )
+Result<SequenceHeader> parse_sequence_header(BitReader& r, std::uint32_t version_minor,
+                                             SequenceHeaderPlaces* places) {
+  constexpr std::int64_t kAny = 0xFFFFFFFE;
+  SequenceHeader h;
+  SequenceHeaderPlaces p;
+  std::uint64_t at = r.bit_pos();
+  h.profile_idc = r.u(8, "profile_idc");
+  expect_supported(r, h.profile_idc <= version_minor, "R-HDR-01", "profile_idc", at);
+  if (!r.error() && h.profile_idc != version_minor) return unsupported_minor_version();
+  at = r.bit_pos();
+  h.level_idc = r.u(8, "level_idc");
+  expect_supported(r, h.level_idc >= 1 && h.level_idc <= kMaxLevelIdc, "R-HDR-02", "level_idc",
+                   at);
+  if (r.error()) return *r.error();
+  const Level& level = h.level();
+  p.num_vertices_minus1 = r.bit_pos();
+  h.num_vertices =
+      r.ue("num_vertices_minus1", {0, std::int64_t{level.max_vertices} - 1}, "R-LVL-01") + 1;
+  p.num_triangles = r.bit_pos();
+  h.num_triangles = r.ue("num_triangles", {0, level.max_triangles}, "R-LVL-02");
+  p.open_end_flag = r.bit_pos();
+  if (h.profile_idc >= kProfileHigh) h.open_end_flag = r.flag("open_end_flag");
+  p.num_frames_minus1 = r.bit_pos();
+  h.num_frames = kMaxFrames;
+  if (!h.open_end_flag) {
+    h.num_frames = r.ue("num_frames_minus1", {0, std::int64_t{kMaxFrames} - 1}, "R-LVL-03") + 1;
+  }
+  p.frame_rate_numerator_minus1 = r.bit_pos();
+  h.frame_rate.numerator = r.ue("frame_rate_numerator_minus1", {0, kAny}, "R-HDR-03") + 1;
+  h.frame_rate.denominator = r.ue("frame_rate_denominator_minus1", {0, kAny}, "R-HDR-03") + 1;
+  h.grid.log2_step = r.se("grid_log2_step", {kMinGridLog2Step, kMaxGridLog2Step}, "R-HDR-04");
+  for (std::int32_t& origin : h.grid.origin) {
+    origin = r.se("grid_origin", {-kMaxGridOrigin, kMaxGridOrigin}, "R-HDR-05");
+  }
+  h.position_bits = static_cast<int>(
+      r.u(5, "position_bits", {kMinPositionBits, kMaxPositionBits}, "R-HDR-06"));
+  r.byte_alignment();
+  r.expect_end();
+  if (r.error()) return *r.error();
+  if (places != nullptr) *places = p;
+  return h;
+}
+
+}  // namespace rlpc

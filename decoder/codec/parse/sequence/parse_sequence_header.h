@@ -1,0 +1,23 @@
+// 6.3 Sequence header, parsing side.
+#pragma once
+
+#include "common/codec/bits/bit_reader.h"
+#include "common/codec/syntax/sequence_header.h"
+#include "common/result.h"
+
+namespace rlpc {
+
+// Where elements of a sequence header begin, in bits from the start of the stream.
+struct SequenceHeaderPlaces {
+  std::uint64_t num_vertices_minus1 = 0;
+  std::uint64_t num_triangles = 0;
+  std::uint64_t open_end_flag = 0;
+  std::uint64_t num_frames_minus1 = 0;
+  std::uint64_t frame_rate_numerator_minus1 = 0;
+};
+
+// `r` covers exactly the payload of the unit. places: null: not needed.
+Result<SequenceHeader> parse_sequence_header(BitReader& r, std::uint32_t version_minor,
+                                             SequenceHeaderPlaces* places = nullptr);
+
+}  // namespace rlpc

@@ -1,0 +1,116 @@
+// Reads access units and skinned models from a stream: collects their units and parses them.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+#include "common/codec/kinds/access_unit.h"
+#include "common/codec/syntax/stream_context.h"
+#include "common/memory/owned.h"
+#include "common/result.h"
+#include "decoder/codec/options.h"
+#include "decoder/codec/parse/access_unit_parser.h"
+#include "decoder/codec/parse/memory_limit.h"
+#include "decoder/codec/parse/model_parser.h"
+#include "decoder/codec/units/unit_reader.h"
+
+namespace rlpc {
+
+struct CodedUnit {
+  UnitHeader header;
+  Vector<std::uint8_t> payload;
+};
+
+// The units of an access unit, not parsed except for the GOF header.
+struct CodedAccessUnit {
+  GofHeader gof;
+  Vector<CodedUnit> units;  // the GOF unit first
+
+  // Bytes from the start of the stream.
+  std::uint64_t end() const { return units.back().header.end(); }
+  std::uint32_t end_frame() const { return gof.first_frame + gof.num_frames; }
+};
+
+class AccessUnitReader {
+ public:
+  // units and context must outlive the reader. Uses limits, cut, coarse_layers,
+  // read_dropped_slices and verify_hashes of the options. Without verify_hashes, hash units are
+  // not read, and the caller finds them as the next units.
+  AccessUnitReader(UnitReader& units, const StreamContext& context,
+                   const DecoderOptions& options)
+      : units_(units),
+        context_(context),
+        memory_{options.limits.max_memory_bytes, 0},
+        cut_(options.cut),
+        read_dropped_(options.read_dropped_slices),
+        wants_hash_(options.verify_hashes) {
+    cut_.needed_layers = std::min(cut_.needed_layers, options.coarse_layers);
+  }
+
+  MemoryLimit memory_limit() const {
+    return {memory_.max_bytes, memory_.bytes_in_use + cached_bytes_};
+  }
+  const SliceCut& cut() const { return cut_; }
+  // Of what read() and read_model() give from now on.
+  void set_cut(const SliceCut& cut) { cut_ = cut; }
+  // Sets the memory that the rest of the decoder uses from now on.
+  void set_bytes_in_use(std::uint64_t bytes) { memory_.bytes_in_use = bytes; }
+  // Beyond that, for GOFs that are kept. Others may be parsing at the same time.
+  void set_cached_bytes(std::uint64_t bytes) { cached_bytes_ = bytes; }
+
+  // Reads and parses an access unit. gof_unit: its GOF unit; first_frame: the first_frame that
+  // the GOF must have; models: those alive.
+  Result<AccessUnit> read(const UnitHeader& gof_unit, std::uint32_t first_frame,
+                          const ModelSlots& models);
+  // Reads and parses a skinned model.
+  Result<ParsedModel> read_model(const UnitHeader& model_unit, const ModelSlots& models);
+  // End of the last access unit or skinned model read, bytes from the start of the stream.
+  std::uint64_t end() const { return end_; }
+
+  // read() in two steps; parse() may run on another thread. max_memory_bytes limits the
+  // payloads and, separately, the parsed result. If a step fails, read() reports the error.
+  std::optional<CodedAccessUnit> collect(const UnitHeader& gof_unit, std::uint32_t first_frame,
+                                         std::uint64_t max_memory_bytes);
+  // cut: one that no set_cut() changes.
+  Result<AccessUnit> parse(const CodedAccessUnit& coded, const ModelSlots& models,
+                           const SliceCut& cut, std::uint64_t max_memory_bytes) const;
+  // The same for a skinned model.
+  std::optional<Vector<CodedUnit>> collect_model(const UnitHeader& model_unit,
+                                                 std::uint64_t max_memory_bytes);
+  Result<ParsedModel> parse_model(const Vector<CodedUnit>& coded, const ModelSlots& models,
+                                  const SliceCut& cut, std::uint64_t max_memory_bytes) const;
+
+ private:
+  Result<bool> parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
+                          const Vector<std::uint8_t>& payload, std::uint32_t first_frame,
+                          const ModelSlots& models) const;
+  Result<bool> parse_unit(ModelParser& parser, const UnitHeader& unit,
+                          const Vector<std::uint8_t>& payload, const ModelSlots& models) const;
+  MemoryLimit limit_ahead(std::uint64_t max_memory_bytes) const;
+  // Whether there is memory for the payload of a unit, in addition to what its access unit or
+  // skinned model has taken.
+  static Result<bool> check_fits(const UnitHeader& unit, std::uint64_t taken_bytes,
+                                 const MemoryLimit& memory);
+  // Whether a slice need not be read: the cut drops it.
+  template <class Parser>
+  Result<bool> is_dropped(const UnitHeader& unit, Parser& parser);
+  // Such a payload.
+  Result<Vector<std::uint8_t>> payload(const UnitHeader& unit, std::uint64_t taken_bytes);
+  // The slice unit that follows `unit`; none if another unit follows.
+  Result<std::optional<UnitHeader>> slice_after(const UnitHeader& unit);
+  Result<std::optional<UnitHeader>> unit_after(const UnitHeader& unit,
+                                               std::optional<UnitType> slice);
+
+  UnitReader& units_;
+  const StreamContext& context_;
+  MemoryLimit memory_;
+  std::atomic<std::uint64_t> cached_bytes_ = 0;
+  SliceCut cut_;
+  bool read_dropped_;
+  bool wants_hash_;
+  std::uint64_t end_ = 0;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,19 @@
+// 6.9: the GOF index of a stream, found from its end.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "decoder/codec/parse/sequence/parse_gof_index.h"
+#include "decoder/codec/units/unit_reader.h"
+
+namespace rlpc {
+
+// What the index before the end of the sequence lists; nothing if there is none. Whether units
+// are there is checked when they are parsed.
+//
+// first_unit: lower bound of the offset of the end of the sequence, bytes.
+Result<GofIndex> find_gof_index(UnitReader& units, std::uint64_t first_unit,
+                                const SequenceHeader& header);
+
+}  // namespace rlpc

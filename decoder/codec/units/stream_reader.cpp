@@ -1,0 +1,394 @@
+#include "decoder/codec/units/stream_reader.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/codec/syntax/stream_format.h"
+#include "decoder/codec/parse/memory_estimate.h"
+#include "decoder/codec/parse/parse_frame_gof.h"
+#include "decoder/codec/parse/parse_gof_header.h"
+#include "decoder/codec/parse/sequence/parse_clip_table.h"
+#include "decoder/codec/parse/sequence/parse_connectivity.h"
+#include "decoder/codec/parse/sequence/parse_end_of_sequence.h"
+#include "decoder/codec/parse/sequence/parse_metadata.h"
+#include "decoder/codec/parse/sequence/parse_sequence_header.h"
+#include "decoder/codec/parse/sequence/parse_vertex_order.h"
+#include "decoder/codec/units/exceeded_limit.h"
+#include "decoder/codec/units/find_gof_index.h"
+
+namespace rlpc {
+namespace {
+
+std::uint64_t bytes_of(const Vector<Clip>& clips) {
+  std::uint64_t bytes = clips.capacity() * sizeof(Clip);
+  for (const Clip& clip : clips) bytes += clip.name.capacity();
+  return bytes;
+}
+
+}  // namespace
+
+StreamReader::StreamReader(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
+    : limits_(options.limits),
+      is_coarse_(options.coarse_layers != SliceCut::kAll),
+      skips_damaged_units_(options.skip_damaged_units),
+      units_(std::move(source), options.trace, options.limits.max_memory_bytes),
+      access_units_(units_, context_, options),
+      models_(units_, access_units_) {}
+
+Result<bool> StreamReader::open() {
+  if (auto ok = units_.stream_header(); !ok) return ok;
+  if (auto ok = read_sequence_header(); !ok) return ok;
+  bool have_connectivity = false;
+  for (;;) {
+    const auto unit = units_.header_at(offset_);
+    if (!unit) return unit.error();
+    if (unit->type() == UnitType::kConnectivity && !have_connectivity) {
+      if (auto ok = read_connectivity(*unit); !ok) return ok;
+      have_connectivity = true;
+    } else if (unit->type() == UnitType::kVertexOrder && have_connectivity &&
+               vertex_order_.empty()) {
+      if (auto ok = read_vertex_order(*unit); !ok) return ok;
+    } else if (starts_gofs(*unit) && have_connectivity) {
+      return true;
+    } else {
+      const auto is_intact = read_ancillary(*unit);
+      if (!is_intact) return is_intact;
+      if (*is_intact && have_connectivity) keep_place_of(*unit);
+    }
+    offset_ = unit->end();
+  }
+}
+
+// 6.1 StartsGofs( )
+bool StreamReader::starts_gofs(const UnitHeader& unit) const {
+  return unit.type() == UnitType::kGof ||
+         (unit.type() == UnitType::kModel && units_.version_minor() >= 2);
+}
+
+// 6.3: always the first unit.
+Result<bool> StreamReader::read_sequence_header() {
+  const auto unit = units_.header_at(offset_);
+  if (!unit) return unit.error();
+  if (unit->type() != UnitType::kSequenceHeader)
+    return misplaced(*unit, units_.version_minor());
+  const auto payload = units_.payload(*unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(*unit, *payload);
+  SequenceHeaderPlaces places;
+  const auto header = parse_sequence_header(r, units_.version_minor(), &places);
+  if (!header) return header.error();
+  context_.header = *header;
+  units_.set_max_unit_bytes(context_.header.level().max_unit_bytes);
+  offset_ = unit->end();
+  return check_limits(places);
+}
+
+Result<bool> StreamReader::check_limits(const SequenceHeaderPlaces& places) {
+  const SequenceHeader& header = context_.header;
+  const std::uint64_t bytes =
+      memory_of_stream(header, kFramesHeld) + (is_coarse_ ? memory_of_coarse_mesh(header) : 0);
+  if (const auto error = find_exceeded_limit(header, places, limits_, bytes)) return *error;
+  bytes_in_use_ = bytes;
+  units_.set_bytes_in_use(bytes);
+  access_units_.set_bytes_in_use(bytes);
+  return true;
+}
+
+Result<bool> StreamReader::read_connectivity(const UnitHeader& unit) {
+  const auto payload = units_.payload(unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(unit, *payload);
+  auto triangles =
+      parse_connectivity(r, context_.header.num_vertices, context_.header.num_triangles);
+  if (!triangles) return triangles.error();
+  triangles_ = std::move(*triangles);
+  context_.set_connectivity(triangles_);
+  return true;
+}
+
+Result<bool> StreamReader::read_vertex_order(const UnitHeader& unit) {
+  const auto payload = units_.payload(unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(unit, *payload);
+  auto order = parse_vertex_order(r, context_.header.num_vertices);
+  if (!order) return order.error();
+  vertex_order_ = std::move(*order);
+  for (Triangle& t : triangles_) {
+    for (std::uint32_t& v : t) v = vertex_order_[v];
+  }
+  return true;
+}
+
+// Only the first of each counts, as a stream has one at most.
+void StreamReader::keep_place_of(const UnitHeader& unit) {
+  if (unit.type() == UnitType::kAttributes && !attribute_unit_) attribute_unit_ = unit;
+  if (unit.type() == UnitType::kAsset && !asset_unit_) asset_unit_ = unit;
+}
+
+// Units that a decoder may skip: checks their CRC, and keeps metadata and clips. False:
+// damaged; the unit counts as absent.
+Result<bool> StreamReader::read_ancillary(const UnitHeader& unit) {
+  auto ok = parse_ancillary(unit);
+  if (ok || !skips_damaged_units_ || !unit.ancillary() || ok.error().code != Errc::kInvalid) {
+    return ok;
+  }
+  const std::uint64_t last = damaged_units_.empty() ? 0 : damaged_units_.back().bit_pos;
+  if (ok.error().bit_pos > last)
+    damaged_units_.push_back(ok.error());  // not after a seek again
+  return false;
+}
+
+Result<bool> StreamReader::parse_ancillary(const UnitHeader& unit) {
+  if (!unit.ancillary()) return misplaced(unit, units_.version_minor());
+  if (unit.type() == UnitType::kMetadata) return read_metadata(unit);
+  if (unit.type() == UnitType::kClipTable) return read_clip_table(unit);
+  return units_.skip(unit);
+}
+
+void StreamReader::count_kept(std::uint64_t before, std::uint64_t now) {
+  bytes_in_use_ += now - before;
+  access_units_.set_bytes_in_use(bytes_in_use_);
+  units_.set_bytes_in_use(access_units_.memory_limit().bytes_in_use);
+}
+
+Result<bool> StreamReader::read_metadata(const UnitHeader& unit) {
+  const auto payload = units_.payload(unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(unit, *payload);
+  auto json = parse_metadata(r, access_units_.memory_limit());
+  if (!json) return json.error();
+  count_kept(metadata_.size(), json->size());
+  metadata_ = std::move(*json);
+  return true;
+}
+
+Result<bool> StreamReader::read_clip_table(const UnitHeader& unit) {
+  const auto payload = units_.payload(unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(unit, *payload);
+  auto clips = parse_clip_table(r, context_.header.num_frames, access_units_.memory_limit());
+  if (!clips) return clips.error();
+  count_kept(bytes_of(clips_), bytes_of(*clips));
+  clips_ = std::move(*clips);
+  return true;
+}
+
+Result<std::optional<UnitHeader>> StreamReader::find_gof(Models models) {
+  for (;;) {
+    const auto unit = units_.header_at(offset_);
+    if (!unit) return unit.error();
+    if (unit->type() == UnitType::kGof) {
+      if (frames_parsed_ == context_.header.num_frames) {
+        return Error{Errc::kInvalid, "R-END-01", "unit_type", unit->offset * 8};
+      }
+      return std::optional(*unit);
+    }
+    if (unit->type() == UnitType::kEndOfSequence) {
+      if (const auto ok = check_end(*unit); !ok) return ok.error();
+      return std::optional<UnitHeader>();
+    }
+    if (starts_gofs(*unit)) {
+      const auto end = models == Models::kSkip ? models_.skip(*unit) : models_.read(*unit);
+      if (!end) return end.error();
+      offset_ = *end;
+      continue;
+    }
+    if (const auto ok = read_ancillary(*unit); !ok) return ok.error();
+    offset_ = unit->end();
+  }
+}
+
+// 6.8 end_of_sequence( )
+Result<bool> StreamReader::check_end(const UnitHeader& unit) {
+  const auto payload = units_.payload(unit);
+  if (!payload) return payload.error();
+  BitReader r = units_.bits(unit, *payload);
+  const std::uint32_t num_frames = parse_end_of_sequence(r, context_.header).num_frames;
+  units_.flush_trace();
+  if (r.error()) return *r.error();
+  if (frames_parsed_ != num_frames) {
+    return Error{Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8};
+  }
+  if (units_.goes_on_after(unit.end())) {
+    return Error{Errc::kInvalid, "R-END-02", "end_of_sequence", unit.end() * 8};
+  }
+  ended_ = true;
+  return true;
+}
+
+Result<std::optional<std::uint32_t>> StreamReader::skip_damage() {
+  constexpr std::uint32_t kEnough = 8;  // a code of at most 63 bits
+  for (bool is_first = true;; is_first = false) {
+    const auto unit = units_.header_at(offset_);
+    if (!unit) return unit.error();
+    if (unit->type() == UnitType::kEndOfSequence) return std::optional<std::uint32_t>();
+    // The GOF with the error begins here, if its own unit could be read.
+    if (unit->type() == UnitType::kGof && !is_first) {
+      const auto bytes = units_.payload_start(*unit, kEnough);
+      if (!bytes) return bytes.error();
+      BitReader r = units_.bits(*unit, *bytes);
+      const std::int64_t highest = std::int64_t{context_.header.num_frames} - 1;
+      const std::uint32_t first_frame = parse_first_frame(r, {frames_parsed_, highest});
+      if (r.error()) return *r.error();
+      frames_parsed_ = first_frame;
+      return std::optional(first_frame);
+    }
+    if (unit->type() == UnitType::kModel && !is_first) {
+      const auto end = models_.skip(*unit);
+      if (!end) return end.error();
+      offset_ = *end;
+    } else {
+      offset_ = unit->end();
+    }
+  }
+}
+
+std::uint32_t StreamReader::find_num_frames() {
+  const SequenceHeader& header = context_.header;
+  const std::uint32_t payload_bytes = end_of_sequence_bytes(header);
+  const std::uint64_t end_bytes =
+      kUnitHeaderBytes + std::uint64_t{payload_bytes} + kUnitCrcBytes;
+  if (!header.open_end_flag || units_.size() < offset_ + end_bytes) return header.num_frames;
+  const auto unit = units_.header_at(units_.size() - end_bytes);
+  if (!unit || unit->type() != UnitType::kEndOfSequence) return header.num_frames;
+  const auto bytes = units_.payload_start(*unit, payload_bytes);
+  if (!bytes) return header.num_frames;
+  BitReader r(*bytes);
+  const std::uint32_t num_frames = parse_end_of_sequence(r, header).num_frames;
+  return r.error() ? header.num_frames : num_frames;
+}
+
+Result<AccessUnit> StreamReader::read(const UnitHeader& gof_unit) {
+  const auto models = models_.at(gof_unit.offset);
+  if (!models) return models.error();
+  auto access_unit = access_units_.read(gof_unit, frames_parsed_, *models);
+  if (access_unit) {
+    go_past(gof_unit, access_unit->header().num_frames, access_units_.end());
+  }
+  return access_unit;
+}
+
+void StreamReader::go_past(const UnitHeader& gof_unit, std::uint32_t num_frames,
+                           std::uint64_t end) {
+  remember_gof(gof_unit);
+  frames_parsed_ += num_frames;
+  offset_ = end;
+}
+
+Result<std::optional<AccessUnit>> StreamReader::next() {
+  const auto unit = find_gof();
+  if (!unit) return unit.error();
+  if (!*unit) return std::optional<AccessUnit>();
+  auto access_unit = read(**unit);
+  if (!access_unit) return access_unit.error();
+  return std::optional(std::move(*access_unit));
+}
+
+Result<GofHeader> StreamReader::gof_header(const UnitHeader& unit) {
+  constexpr std::uint32_t kEnough = 17;  // two codes of at most 63 bits, and gof_kind
+  const auto bytes = units_.payload_start(unit, kEnough);
+  if (!bytes) return bytes.error();
+  BitReader r = units_.bits(unit, *bytes);
+  const GofHeader header = parse_gof_header(r, context_.header, frames_parsed_);
+  if (r.error()) return *r.error();
+  return header;
+}
+
+// After the unit of a GOF. A frame unit may tell that the GOF ends early.
+Result<bool> StreamReader::skip_slices(UnitType type, std::uint32_t first_frame) {
+  while (units_.goes_on_after(offset_)) {
+    const auto unit = units_.header_at(offset_);
+    if (!unit) return unit.error();
+    if (unit->type() != type) break;
+    offset_ = unit->end();
+    if (type != UnitType::kFrame || !context_.header.open_end_flag) continue;
+    const auto end = gof_end(*unit);
+    if (!end) return end.error();
+    if (*end) frames_parsed_ = first_frame + **end;
+  }
+  return true;
+}
+
+// The number of frames of the GOF, if the frame unit gives it.
+Result<std::optional<std::uint32_t>> StreamReader::gof_end(const UnitHeader& unit) {
+  constexpr std::uint32_t kEnough = 9;  // a code of at most 63 bits, and gof_end_flag
+  const auto bytes = units_.payload_start(unit, kEnough);
+  if (!bytes) return bytes.error();
+  BitReader r = units_.bits(unit, *bytes);
+  const FrameUnitStart start = parse_frame_unit_start(r, context_.header, kMaxFrames);
+  if (r.error()) return *r.error();
+  return start.gof_end_flag ? std::optional(start.frame_idx) : std::nullopt;
+}
+
+void StreamReader::remember_gof(const UnitHeader& unit) {
+  if (gofs_.empty() || gofs_.back().first_frame < frames_parsed_) {
+    gofs_.push_back({unit.offset, frames_parsed_});
+  }
+}
+
+Result<bool> StreamReader::seek(std::uint32_t frame) {
+  const auto gof = pass_gofs_to(frame);
+  if (!gof) return gof.error();
+  go_to(gof->offset, gof->first_frame);
+  return true;
+}
+
+Result<GofPlace> StreamReader::locate(std::uint32_t frame) {
+  const Place here = place();
+  const auto gof = pass_gofs_to(frame);
+  return_to(here);
+  return gof;
+}
+
+void StreamReader::return_to(const Place& place) {
+  go_to(place.offset, place.next_first_frame);
+  ended_ = place.ended;
+}
+
+void StreamReader::go_to(std::uint64_t offset, std::uint32_t first_frame) {
+  ended_ = false;
+  offset_ = offset;
+  frames_parsed_ = first_frame;
+}
+
+// Goes past the GOF with the frame, and returns where it is.
+Result<GofPlace> StreamReader::pass_gofs_to(std::uint32_t frame) {
+  ended_ = false;
+  const bool met = !gofs_.empty() && frame < frames_parsed_;
+  if (!met && !index_tried_) {
+    auto index = find_gof_index(units_, offset_, context_.header);
+    // The next GOF needs no index, and the end of the stream may not have arrived yet.
+    const bool can_wait = !index && index.error().code == Errc::kIo && frame == frames_parsed_;
+    if (!index && !can_wait) return index.error();
+    if (index) {
+      index_tried_ = true;
+      models_.add(index->models);
+      if (!index->gofs.empty()) gofs_ = std::move(index->gofs);
+    }
+  }
+  const auto after =
+      std::upper_bound(gofs_.begin(), gofs_.end(), frame,
+                       [](std::uint32_t f, const GofLocation& g) { return f < g.first_frame; });
+  if (after != gofs_.begin()) {
+    offset_ = std::prev(after)->offset;
+    frames_parsed_ = std::prev(after)->first_frame;
+  }
+  // Skips GOFs forward: only their headers are read.
+  for (;;) {
+    const auto unit = find_gof(Models::kSkip);
+    if (!unit) return unit.error();
+    if (!*unit) return Error{Errc::kInvalid, "R-END-01", "unit_type", offset_ * 8};
+    const auto gof = gof_header(**unit);
+    if (!gof) return gof.error();
+    const std::uint64_t start = offset_;
+    const std::uint32_t first_frame = frames_parsed_;
+    go_past(**unit, gof->num_frames, (*unit)->end());
+    if (const auto type = slice_type(gof->kind)) {
+      if (auto ok = skip_slices(*type, first_frame); !ok) return ok.error();
+    }
+    if (frame < frames_parsed_)
+      return GofPlace{start, first_frame, frames_parsed_ - first_frame};
+  }
+}
+
+}  // namespace rlpc

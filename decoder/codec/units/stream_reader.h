@@ -1,0 +1,149 @@
+// Iterates over the access units of a stream: parses everything, reconstructs nothing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "common/codec/kinds/access_unit.h"
+#include "common/codec/mesh/clip.h"
+#include "common/codec/syntax/stream_context.h"
+#include "common/memory/owned.h"
+#include "common/result.h"
+#include "decoder/codec/options.h"
+#include "decoder/codec/parse/sequence/parse_gof_index.h"
+#include "decoder/codec/parse/sequence/parse_sequence_header.h"
+#include "decoder/codec/units/access_unit_reader.h"
+#include "decoder/codec/units/stream_models.h"
+#include "decoder/codec/units/unit_reader.h"
+
+namespace rlpc {
+
+// Frames that a decoder holds in addition to its GOF; open() counts them towards
+// max_memory_bytes.
+inline constexpr std::uint32_t kFramesHeld = 4;
+
+// The frames of a GOF, and where its unit is.
+struct GofPlace {
+  std::uint64_t offset = 0;  // bytes from the start of the stream
+  std::uint32_t first_frame = 0;
+  std::uint32_t num_frames = 0;
+};
+
+class StreamReader {
+ public:
+  StreamReader(std::unique_ptr<ByteSource> source, const DecoderOptions& options);
+  StreamReader(const StreamReader&) = delete;
+  StreamReader& operator=(const StreamReader&) = delete;
+
+  // Reads up to the first GOF: sequence header, connectivity, vertex order.
+  Result<bool> open();
+
+  const StreamContext& context() const { return context_; }
+  const SequenceHeader& header() const { return context_.header; }
+  std::span<const Triangle> triangles() const { return triangles_; }  // in output order
+  // 8.6.1: output index of each decoded vertex; empty: the same.
+  std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
+  const String& metadata() const { return metadata_; }  // the last so far
+  const Vector<Clip>& clips() const { return clips_; }  // likewise
+  // Of ancillary units that count as absent (DecoderOptions::skip_damaged_units).
+  const Vector<Error>& damaged_units() const { return damaged_units_; }
+  // The asset unit, whose CRC has been checked; none: there is none.
+  const std::optional<UnitHeader>& asset_unit() const { return asset_unit_; }
+  // The attribute unit, whose CRC has been checked; none: there is none.
+  const std::optional<UnitHeader>& attribute_unit() const { return attribute_unit_; }
+
+  // Advances to the next GOF unit, past everything in between. None: a proper end of the
+  // sequence. Skinned models are parsed, or only those that a GOF to be read uses.
+  enum class Models : std::uint8_t { kParse, kSkip };
+  Result<std::optional<UnitHeader>> find_gof(Models models = Models::kParse);
+  // The access unit that begins with the unit found; advances past it.
+  Result<AccessUnit> read(const UnitHeader& gof_unit);
+  // The same for an access unit read elsewhere, whose units end at `end`.
+  void go_past(const UnitHeader& gof_unit, std::uint32_t num_frames, std::uint64_t end);
+  // Finds and reads the next access unit.
+  Result<std::optional<AccessUnit>> next();
+  // Of the next GOF: reads only the first bytes of its unit.
+  Result<GofHeader> gof_header(const UnitHeader& unit);
+  // The number of frames: of an open-ended stream, that at its end; kMaxFrames if it has none.
+  // Does not check the unit. Reads a pipe to its end.
+  std::uint32_t find_num_frames();
+  // After an error in a GOF: makes the next GOF whose unit can be found the next one, and
+  // returns its first frame; none: the stream has no more. Errors: the units after the error
+  // cannot be told apart; the next GOF does not come after frames that have been read.
+  Result<std::optional<std::uint32_t>> skip_damage();
+  // Makes the GOF with `frame` (below num_frames) the next one.
+  Result<bool> seek(std::uint32_t frame);
+  // Finds that GOF, and leaves the stream where it is.
+  Result<GofPlace> locate(std::uint32_t frame);
+  // Between two units.
+  struct Place {
+    std::uint64_t offset = 0;
+    std::uint32_t next_first_frame = 0;
+    bool ended = false;
+  };
+  Place place() const { return {offset_, frames_parsed_, ended_}; }
+  void return_to(const Place& place);
+  // Goes to a place between units, after frames of which first_frame is the next.
+  void go_to(std::uint64_t offset, std::uint32_t first_frame);
+
+  // First frame of the GOF that find_gof() finds.
+  std::uint32_t next_first_frame() const { return frames_parsed_; }
+  bool ended() const { return ended_; }
+  std::uint64_t offset() const { return offset_; }  // of the next unit
+  std::uint32_t num_gofs() const { return static_cast<std::uint32_t>(gofs_.size()); }
+  // The memory that kept GOFs take from now on.
+  void set_cached_bytes(std::uint64_t bytes) {
+    units_.set_bytes_in_use(bytes_in_use_ + bytes);
+    access_units_.set_cached_bytes(bytes);
+  }
+  // Estimated, without GOFs.
+  std::uint64_t bytes_in_use() const { return bytes_in_use_; }
+  UnitReader& units() { return units_; }
+  AccessUnitReader& access_units() { return access_units_; }
+  StreamModels& models() { return models_; }
+
+ private:
+  bool starts_gofs(const UnitHeader& unit) const;
+  Result<bool> read_sequence_header();
+  // Counts something that is kept, in place of what was kept before.
+  void count_kept(std::uint64_t before, std::uint64_t now);
+  Result<bool> read_connectivity(const UnitHeader& unit);
+  Result<bool> read_vertex_order(const UnitHeader& unit);
+  Result<bool> read_ancillary(const UnitHeader& unit);
+  void keep_place_of(const UnitHeader& unit);
+  Result<bool> parse_ancillary(const UnitHeader& unit);
+  Result<bool> read_metadata(const UnitHeader& unit);
+  Result<bool> read_clip_table(const UnitHeader& unit);
+  Result<bool> check_limits(const SequenceHeaderPlaces& places);
+  Result<bool> check_end(const UnitHeader& unit);
+  Result<GofPlace> pass_gofs_to(std::uint32_t frame);
+  Result<bool> skip_slices(UnitType type, std::uint32_t first_frame);
+  Result<std::optional<std::uint32_t>> gof_end(const UnitHeader& unit);
+  void remember_gof(const UnitHeader& unit);
+
+  DecodeLimits limits_;
+  bool is_coarse_;
+  bool skips_damaged_units_;
+  std::uint64_t bytes_in_use_ = 0;  // without kept GOFs
+  UnitReader units_;
+  StreamContext context_;
+  AccessUnitReader access_units_;
+  StreamModels models_;
+  Vector<Triangle> triangles_;
+  Vector<std::uint32_t> vertex_order_;
+  String metadata_;
+  Vector<Clip> clips_;
+  Vector<Error> damaged_units_;
+  std::optional<UnitHeader> attribute_unit_;
+  std::optional<UnitHeader> asset_unit_;
+
+  std::uint64_t offset_ = kStreamHeaderBytes;
+  std::uint32_t frames_parsed_ = 0;
+  Vector<GofLocation> gofs_;  // those seen so far, ascending
+  bool index_tried_ = false;
+  bool ended_ = false;
+};
+
+}  // namespace rlpc

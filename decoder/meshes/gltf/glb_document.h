@@ -1,0 +1,37 @@
+// A .glb file in the making: its JSON chunk and its binary chunk.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "common/files/output_file.h"
+#include "decoder/meshes/frame_sink.h"
+#include "decoder/meshes/gltf/glb_buffers.h"
+
+namespace rlpc {
+
+inline constexpr std::uint64_t kMaxGltfBytes = std::numeric_limits<std::uint32_t>::max();
+
+struct GlbDocument {
+  explicit GlbDocument(FrameRate frame_rate);
+
+  GltfJson root;  // without accessors, bufferViews and buffers
+  GlbBuffers buffers;
+};
+
+// The JSON; bytes of names that are no UTF-8 are replaced.
+std::string glb_text(const GltfJson& root);
+
+OutputError too_large_for_glb(const std::string& path);
+
+// Why the document cannot be written, as far as it has been made; none: nothing speaks against
+// it. limit: null for none.
+std::optional<OutputError> failure_of(const GlbDocument& document, const std::string& path,
+                                      const std::shared_ptr<OutputLimit>& limit);
+
+// Writes the document and completes the file.
+std::optional<OutputError> write_glb(GlbDocument& document, OutputFile& file);
+
+}  // namespace rlpc

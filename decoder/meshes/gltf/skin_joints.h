@@ -1,0 +1,94 @@
+// Joints of a skin: their places in each frame, relative to their parents, as keys of
+// animations.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/codec/mesh/clip.h"
+#include "common/codec/mesh/mesh.h"
+#include "common/codec/mesh/skeleton.h"
+#include "decoder/meshes/gltf/eigen.h"
+
+namespace rlpc {
+
+// Rotation and origin, in units.
+struct JointPlace {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d moved(const Eigen::Vector3d& p) const { return rotation * p + origin; }
+  JointPlace after(const JointPlace& first) const {
+    return {rotation * first.rotation, moved(first.origin)};
+  }
+  JointPlace inverse() const {
+    const Eigen::Quaterniond back = rotation.conjugate();
+    return {back, -(back * origin)};
+  }
+};
+
+using JointPlaces = std::vector<JointPlace>;  // [joint]
+// The map of a joint from the rest shape, rows of a matrix.
+using JointMap = Eigen::Matrix<double, 3, 4>;
+using JointMaps = std::vector<JointMap>;  // [joint]
+
+JointPlace joint_place(const BonePlace& place, const Grid& grid);
+JointMap map_of_place(const JointPlace& place);
+
+// Keys of a track within a clip: frames of the clip, and `width` numbers for each. No keys: the
+// value of the node throughout.
+struct JointTrack {
+  std::vector<std::uint32_t> keys;
+  std::vector<float> values;
+  bool has_short_values = false;  // values are multiples of 1/32767
+};
+
+struct JointMotion {
+  struct Node {  // relative to the parent
+    std::int32_t parent = -1;
+    std::array<float, 4> rotation{};  // x, y, z, w
+    std::array<float, 3> translation{};
+  };
+  struct OfClip {
+    JointTrack rotation;
+    JointTrack translation;
+  };
+
+  std::vector<Node> nodes;                          // [joint], as in frame 0
+  std::vector<std::vector<OfClip>> clips;           // [clip][joint]
+  std::vector<std::array<float, 16>> inverse_bind;  // [joint], columns
+};
+
+// Frames of a track that have to be keys, so that values between keys deviate from what is
+// interpolated linearly by no more than is tolerated. is_near(a, b): for all frames between a
+// and b.
+template <class IsNear>
+std::vector<std::uint32_t> needed_keys(std::uint32_t num_frames, const IsNear& is_near) {
+  constexpr std::uint32_t kLongest = 256;
+  std::vector<std::uint32_t> keys{0};
+  for (std::uint32_t a = 0; a + 1 < num_frames;) {
+    std::uint32_t b = a + 1;
+    while (b + 1 < num_frames && b - a < kLongest && is_near(a, b + 1)) ++b;
+    keys.push_back(b);
+    a = b;
+  }
+  return keys;
+}
+
+// The keys, or all frames where these take fewer bytes: tracks with the same keys share times.
+std::vector<std::uint32_t> keys_to_write(std::vector<std::uint32_t> keys,
+                                         std::uint32_t num_frames, std::size_t bytes_of_key);
+
+// places [frame][joint]; reach [joint]: how far from its origin a joint moves vertices;
+// tolerance: of the motion at that distance, in units.
+JointMotion joint_motion(const Skeleton& skeleton, const Grid& grid,
+                         std::span<const JointPlaces> places, std::span<const double> reach,
+                         std::span<const Clip> spans, double tolerance);
+
+// The maps as viewers make them from the keys, in a frame of a clip.
+JointMaps joint_maps(const JointMotion& motion, std::size_t clip, std::uint32_t frame);
+
+}  // namespace rlpc

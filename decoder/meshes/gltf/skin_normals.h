@@ -1,0 +1,53 @@
+// The normals of a skin: those of its rest shape, and morph targets for how they move beside
+// the joints.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "decoder/meshes/gltf/gltf_look.h"
+#include "decoder/meshes/gltf/principal_shapes.h"
+#include "decoder/meshes/gltf/skin_joints.h"
+#include "decoder/meshes/gltf/skin_shape.h"
+
+namespace rlpc {
+
+// The unit vectors that joints turn into the directions of `normals`, as viewers do: by the
+// linear part of the weighted sum of their maps. Where that is singular, the normals
+// themselves. vertex: the vertex of the skin that each normal belongs to.
+std::vector<float> rest_normals(const SkinInfluences& influences, const JointMaps& maps,
+                                std::span<const std::uint32_t> vertex,
+                                std::span<const float> normals);
+
+struct SkinNormals {
+  std::vector<float>
+      rest;               // of output vertices; with all weights 0, they show those of frame 0
+  PrincipalShapes moves;  // of output vertices; no weights in frame 0
+  bool lacks_moves = false;  // as they need more than max_bytes
+};
+
+// Which vertices of the stream have normals that joints alone may not turn as the surface does.
+struct NormalVertices {
+  std::vector<bool> is_moving;  // normals may need targets
+  std::vector<bool> is_bent;  // several joints move the triangles around it; then it moves, too
+};
+
+// missing: missing_moves(). Time: in proportion to triangles times frames, far less than
+// normals take.
+NormalVertices normal_vertices(const GlbMesh& mesh, const SkinInfluences& influences,
+                               std::span<const float> rest, const Eigen::MatrixXf& missing);
+
+struct NormalLimits {
+  std::size_t max_targets = 0;
+  std::uint64_t max_bytes = 0;  // for the moves of all frames
+};
+
+// look: with normals. maps: [frame].
+SkinNormals skin_normals(const GltfLook& look, const SkinInfluences& influences,
+                         std::span<const JointMaps> maps, std::span<const float> rest,
+                         ShownFrames frames, const NormalVertices& vertices,
+                         const NormalLimits& limits);
+
+}  // namespace rlpc

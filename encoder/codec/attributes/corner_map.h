@@ -1,0 +1,17 @@
+// Finds the corners of the input again in the decoded triangles, which have another order.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "encoder/codec/write/write_connectivity.h"
+
+namespace rlpc {
+
+// [decoded corner], the corner of the input, both 3 * triangle + k. input: the triangles that
+// the connectivity was made from.
+std::vector<std::uint32_t> map_corners(const ConnectivityCode& connectivity,
+                                       std::span<const Triangle> input);
+
+}  // namespace rlpc

@@ -1,0 +1,50 @@
+// The stages that encode one cluster GOF, with quantisers taken from the settings.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "encoder/codec/kinds/cluster/cluster_gof_encoder.h"
+#include "encoder/codec/kinds/cluster/clustering.h"
+#include "encoder/codec/settings.h"
+#include "encoder/codec/spans/gof_coder.h"
+#include "encoder/codec/spans/sequence_mesh.h"
+
+namespace rlpc {
+
+// How a GOF is divided into clusters.
+struct ClusterChoice {
+  std::uint32_t clusters;
+  bool world;  // analyse in world coordinates instead of local coordinate frames
+};
+
+// `step` is in grid steps everywhere. It is ignored if the settings give explicit quantisers
+// (qu, qc, qdelta).
+class ClusterGofCoding {
+ public:
+  // Keeps references to all arguments.
+  ClusterGofCoding(const SequenceMesh& mesh, const EncoderSettings& settings,
+                   const GofFrames& frames)
+      : mesh_(mesh), settings_(settings), frames_(frames) {}
+
+  const SequenceMesh& mesh() const { return mesh_; }
+  const EncoderSettings& settings() const { return settings_; }
+  const GofFrames& frames() const { return frames_; }
+  // Clusters of the frames, made as the settings say.
+  std::unique_ptr<ClusterMaker> cluster_maker() const;
+  Clustering cluster(ClusterMaker& maker, std::uint32_t count) const;
+  ClusterGofAnalysis analyse(double step, bool world, const Clustering& clustering) const;
+  EncodedGof encode(double step, const ClusterGofAnalysis& analysis) const;
+  // Clusters, analyses and encodes.
+  EncodedGof encode(double step, const ClusterChoice& choice, ClusterMaker& maker) const;
+
+ private:
+  ClusterAnalysisSettings analysis_settings(double step, bool world) const;
+  ClusterCodingSettings coding_settings(double step) const;
+
+  const SequenceMesh& mesh_;
+  const EncoderSettings& settings_;
+  const GofFrames& frames_;
+};
+
+}  // namespace rlpc

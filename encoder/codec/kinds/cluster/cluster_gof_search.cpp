@@ -1,0 +1,143 @@
+#include "encoder/codec/kinds/cluster/cluster_gof_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "common/parallel/for_each.h"
+#include "encoder/codec/kinds/cluster/variant_search.h"
+#include "encoder/codec/spans/count_at.h"
+#include "encoder/codec/spans/lagrangian.h"
+
+namespace rlpc {
+namespace {
+
+// tuned (off: 0): The search for the number of clusters climbs from this entry of the series 1,
+// 2, 3, 4, 6, 8, 12 (count_at), so from eight clusters.
+constexpr std::size_t kFirstCount = 5;
+constexpr std::size_t kNumCounts = 13;      // fixed: up to 96
+constexpr std::uint32_t kSeedVertices = 3;  // fixed: of a cluster
+
+class ClusterSearch {
+ public:
+  ClusterSearch(const ClusterGofCoding& coding, double step)
+      : coding_(coding), step_(step), maker_(coding.cluster_maker()) {}
+
+  FoundClusters run() {
+    const BaselineTools& tools = coding_.settings().baseline;
+    const bool is_free = tools.clusters == 0 && tools.frame_mode == FrameMode::kAuto;
+    // Beside skinned GOFs, which are usually better, only the extremes are tried.
+    if (is_free && coding_.settings().preset == Preset::kMedium &&
+        coding_.settings().profile != Profile::kBaseline) {
+      return better_extreme();
+    }
+    if (coding_.settings().preset != Preset::kFast && has_variants(coding_.settings())) {
+      FoundVariant found = search_variants(coding_, step_, choices_of_paper());
+      return {found.choice, std::move(found.clustering)};
+    }
+    const ClusterChoice choice = choose();
+    return {choice, coding_.cluster(*maker_, choice.clusters)};
+  }
+
+ private:
+  FoundClusters better_extreme() {
+    std::array<FoundClusters, 2> found;
+    found[0].choice = {usual_clusters(coding_.frames().num_vertices), false};
+    found[1].choice = {1, true};
+    for (FoundClusters& of : found)
+      of.clustering = coding_.cluster(*maker_, of.choice.clusters);
+    std::array<double, 2> costs{};
+    for_each(2, [&](std::size_t i) {
+      found[i].analysis = coding_.analyse(step_, found[i].choice.world, found[i].clustering);
+      costs[i] = cost(coding_.encode(step_, *found[i].analysis));
+    });
+    return std::move(found[costs[1] < costs[0] ? 1 : 0]);
+  }
+
+  double cost(const EncodedGof& encoded) const {
+    const double error = squared_error(coding_.frames(), encoded.frame);
+    const double bits = 8.0 * static_cast<double>(encoded.units[0].payload.size());
+    return error + lambda(step_) * bits;
+  }
+  double cost(const ClusterChoice& choice) {
+    return cost(coding_.encode(step_, choice, *maker_));
+  }
+
+  // The last number that leaves vertices beside those of seeds.
+  std::size_t last_count() const {
+    std::size_t last = 0;
+    while (last + 1 < kNumCounts &&
+           count_at(last + 1) * kSeedVertices < coding_.frames().num_vertices) {
+      ++last;
+    }
+    return last;
+  }
+
+  // Climbs from a middling number of clusters while the cost falls.
+  std::uint32_t choose_count(bool world) {
+    const std::size_t last = last_count();
+    std::array<double, kNumCounts> known{};
+    const auto cost_at = [&](std::size_t i) {
+      if (known[i] == 0.0) known[i] = cost({count_at(i), world});
+      return known[i];
+    };
+    std::size_t best = std::min<std::size_t>(last, world ? 0 : kFirstCount);
+    const std::size_t stride = coding_.settings().preset == Preset::kSlow ? 1 : 2;
+    for (const bool up : {true, false}) {
+      for (std::size_t i = best; up ? i + stride <= last : i >= stride;) {
+        i = up ? i + stride : i - stride;
+        if (cost_at(i) >= cost_at(best)) break;
+        best = i;
+      }
+    }
+    return count_at(best);
+  }
+
+  ClusterChoice choose() {
+    const BaselineTools& tools = coding_.settings().baseline;
+    const bool world_requested = tools.frame_mode == FrameMode::kWorld;
+    const bool any_frame = tools.frame_mode == FrameMode::kAuto;
+    if (tools.clusters > 0 && !any_frame) return {tools.clusters, world_requested};
+    const std::uint32_t usual =
+        tools.clusters > 0 ? tools.clusters : usual_clusters(coding_.frames().num_vertices);
+    if (coding_.settings().preset == Preset::kFast) return {usual, world_requested};
+    const auto best_of = [&](bool world) {
+      return ClusterChoice{tools.clusters > 0 ? tools.clusters : choose_count(world), world};
+    };
+    if (!any_frame) return best_of(world_requested);
+    const ClusterChoice local = best_of(false);
+    const ClusterChoice world = best_of(true);
+    return cost(world) < cost(local) ? world : local;
+  }
+
+  // What the variants of the paper's method are tried with.
+  std::vector<ClusterChoice> choices_of_paper() {
+    const BaselineTools& tools = coding_.settings().baseline;
+    if (tools.clusters == 0 || tools.frame_mode != FrameMode::kAuto) return {choose()};
+    return {{tools.clusters, false}, {tools.clusters, true}};
+  }
+
+  const ClusterGofCoding& coding_;
+  double step_;
+  std::unique_ptr<ClusterMaker> maker_;
+};
+
+}  // namespace
+
+FoundClusters search_clusters(const ClusterGofCoding& coding, double step) {
+  return ClusterSearch(coding, step).run();
+}
+
+std::uint32_t usual_clusters(std::uint32_t num_vertices) {
+  // tuned: The number of clusters has this many vertices to each, where it is not searched:
+  // with the fast preset, and beside skinned GOFs.
+  constexpr std::uint32_t kVerticesOfCluster = 56;
+  constexpr std::uint32_t kFewestClusters = 2;  // fixed: of several
+  return std::clamp(num_vertices / kVerticesOfCluster, kFewestClusters,
+                    count_at(kNumCounts - 1));
+}
+
+}  // namespace rlpc

@@ -1,0 +1,24 @@
+// Chooses the clusters of one GOF by Lagrangian cost.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "encoder/codec/kinds/cluster/cluster_gof_coding.h"
+
+namespace rlpc {
+
+struct FoundClusters {
+  ClusterChoice choice{};
+  Clustering clustering;
+  std::optional<ClusterGofAnalysis> analysis = {};  // for the step, if the search made one
+};
+
+// The clusters with the lowest cost at a step (grid steps), among those that the settings
+// allow.
+FoundClusters search_clusters(const ClusterGofCoding& coding, double step);
+
+// A number of clusters that suits many GOFs, for where none is searched.
+std::uint32_t usual_clusters(std::uint32_t num_vertices);
+
+}  // namespace rlpc

@@ -1,0 +1,72 @@
+// Chooses the vertices that define a cluster's local coordinate frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/codec/mesh/mesh.h"
+#include "encoder/codec/kinds/cluster/local_motion.h"
+#include "encoder/codec/spans/gof_frames.h"
+
+namespace rlpc {
+
+using Seed = std::array<std::uint32_t, 3>;  // p1, p2, p3 of a seed triangle
+
+// The squared distance of two positions.
+inline double distance2(const double* a, const double* b) {
+  double sum = 0.0;
+  for (std::size_t c = 0; c < 3; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
+  return sum;
+}
+
+// Which seeds SeedChoice makes, and how it measures motion.
+struct SeedRules {
+  bool first = false;  // the first triangle at a vertex as it is, instead of the best
+  DistanceSum sum = DistanceSum::kSquared;
+};
+
+class SeedChoice {
+ public:
+  using Suits = std::function<bool(const Triangle&)>;
+
+  // Keeps references to the frames and triangles.
+  SeedChoice(const GofFrames& frames, std::span<const Triangle> triangles, int position_bits,
+             const SeedRules& rules = {});
+
+  // The best triangle at a vertex that is degenerate in no frame, turned so that noise rotates
+  // its frame least; in a point cloud, of the vertex and two of its nearest points. With
+  // SeedRules::first, the first that is degenerate in no frame. suits: only such triangles;
+  // none: all.
+  std::optional<Seed> triangle_at(std::uint32_t v, const Suits& suits = {}) const;
+  // How stable a local coordinate frame on the seed is: the minimum over the GOF of the square
+  // of its doubled area; 0 if it is degenerate in any frame. Stops early once the minimum is at
+  // most `threshold`.
+  double quality(const Seed& seed, double threshold = 0.0) const;
+  // Total motion of every vertex between adjacent frames, in the coordinates of a seed (3.2).
+  std::vector<double> motion_in(const Seed& seed) const;
+  // Three distant ones of the vertices of a cluster, from the half that moves least in the
+  // coordinates of its seed; that seed if they give no stable frame.
+  //
+  //   motion  motion_in(seed)
+  Seed spread(const Seed& seed, std::vector<std::uint32_t> vertices,
+              std::span<const double> motion) const;
+  // Vertices of a mesh without a triangle have no seed.
+  bool is_isolated(std::uint32_t v) const {
+    return incident_[v].empty() && !triangles_.empty();
+  }
+
+ private:
+  std::vector<Triangle> triangles_at(std::uint32_t v) const;
+
+  const GofFrames& frames_;
+  std::span<const Triangle> triangles_;
+  int position_bits_;
+  SeedRules rules_;
+  std::vector<std::vector<std::uint32_t>> incident_;  // triangles at each vertex
+};
+
+}  // namespace rlpc

@@ -1,0 +1,14 @@
+// Checks the pattern of GOFs of frames (7.14.1).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/codec/kinds/inter/frame_order.h"
+
+namespace rlpc {
+
+// What is wrong with the pattern; none: it is legal.
+std::optional<std::string> error_of_pattern(const FramePattern& pattern);
+
+}  // namespace rlpc

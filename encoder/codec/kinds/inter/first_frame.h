@@ -1,0 +1,25 @@
+// The first frame of a GOF of frames, which is predicted from no other.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/syntax/sequence_header.h"
+#include "encoder/codec/rest/rest_coding.h"
+#include "encoder/codec/settings.h"
+
+namespace rlpc {
+
+// The frame in an order of its own (8.18), at the step of depth 0; null if its layers cost
+// less, if several layer groups need them, or if the order is not wanted. xyz
+// [num_vertices][3], in grid units. Takes some 10 us per vertex, a third of that with the fast
+// preset.
+std::shared_ptr<const CodedRest> code_first_frame(const CodedMesh& mesh,
+                                                  const FrameSettings& frame_settings,
+                                                  const SequenceHeader& header,
+                                                  const EncoderSettings& settings,
+                                                  std::span<const double> xyz);
+
+}  // namespace rlpc

@@ -1,0 +1,287 @@
+#include "encoder/codec/kinds/inter/patch_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "common/codec/bits/fixed_point.h"
+#include "common/parallel/for_each.h"
+#include "encoder/codec/kinds/inter/on_grid.h"
+#include "encoder/codec/math/det_math.h"
+#include "encoder/codec/math/small_system.h"
+#include "encoder/codec/spans/residual_choice.h"
+#include "encoder/codec/write/bit_cost.h"
+#include "encoder/codec/write/write_residual.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::size_t kTogether = 128;                        // fixed: vertices of a pass
+constexpr std::size_t kPatchesTogether = 16;                  // fixed: likewise
+constexpr double kPoint = 1 << kPointFractionBits;            // fixed: format
+constexpr double kStepUnits = 256.0 / kPoint;                 // fixed: format
+constexpr double kMatrixOne = 1 << kMatrixFractionBits;       // fixed: format
+constexpr double kMotionStep = 1.0 / (1 << kMotionStepLog2);  // fixed: format
+
+// A step of a vertex, in 1/16 grid units.
+double step_of(const FrameRecon& recon, std::uint32_t v) {
+  return static_cast<double>(recon.step(v)) / kStepUnits;
+}
+
+// Bits of a motion, whose patch the contexts have started; they are left as they were.
+double motion_bits(PatchContexts& contexts, const PatchMotion& motion) {
+  BitEstimate bits;
+  const PatchContexts::Means before = contexts.means();
+  for (std::size_t i = 0; i < kMotionValues; ++i) {
+    write_residual(bits, contexts.models(i), contexts.expected(i), motion.residual[i]);
+    contexts.update(i, motion.residual[i]);
+  }
+  contexts.set_means(before);
+  return bits.bits();
+}
+
+double mode_bits(PatchContexts& contexts, int mode) {
+  BitEstimate bits;
+  const auto& models = contexts.mode_models();
+  for (int i = 0; i < std::min(mode + 1, kPatchModes - 1); ++i) {
+    bits.bin(models[static_cast<std::size_t>(i)], i < mode);
+  }
+  return bits.bits();
+}
+
+// Models and contexts adapt to a patch as the writer's do.
+void adapt(PatchContexts& contexts, const PatchMotion& motion) {
+  const int mode = static_cast<int>(motion.mode);
+  for (int i = 0; i < std::min(mode + 1, kPatchModes - 1); ++i) {
+    contexts.mode_models()[static_cast<std::size_t>(i)].update(i < mode);
+  }
+  contexts.set_mode(motion.mode);
+  if (motion.mode == PatchMode::kNeighbours) return;
+  BitCost bits;
+  for (std::size_t i = 0; i < kMotionValues; ++i) {
+    write_residual(bits, contexts.models(i), contexts.expected(i), motion.residual[i]);
+    contexts.update(i, motion.residual[i]);
+  }
+}
+
+// fixed: a guard. Holds the matrix of a motion back to the last one where a flat patch does not
+// determine it; relative to the mean square of distances.
+constexpr double kRidge = 1e-6;
+
+}  // namespace
+
+PatchSearch::PatchSearch(const CodedMesh& mesh, const FrameSettings& settings, bool to_nearest)
+    : mesh_(mesh),
+      settings_(settings),
+      most_alone_(settings.exact_flag ? 0.0
+                  : to_nearest        ? 0.5
+                                      : std::numeric_limits<double>::infinity()),
+      vertices_(settings.num_patches),
+      wanted_(3 * std::size_t{mesh.num_vertices()}),
+      left_(wanted_.size()),
+      of_neighbours_(mesh, settings.layer_group_size.size(), settings.pattern.num_depths()),
+      of_motions_(of_neighbours_) {
+  for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
+    vertices_[settings.patch_of_vertex[v]].push_back(v);
+  }
+}
+
+FramePatches PatchSearch::choose(std::span<const double> xyz, std::uint32_t depth,
+                                 const PatchContexts& contexts, FrameRecon& recon) {
+  FramePatches patches(vertices_.size());
+  recon.move_patches(patches);
+  predict_from_neighbours(xyz, recon);
+  for_ranges(patches.size(), kPatchesTogether, [&](std::size_t first, std::size_t end) {
+    PatchContexts own = contexts;
+    for (std::size_t p = first; p < end; ++p) {
+      if (vertices_[p].empty()) continue;
+      own.start(p);
+      patches[p] = cheapest_motion(p, xyz, depth, recon, own);
+    }
+  });
+  std::array<Costs, 2> of_residuals;
+  for_each(of_residuals.size(), [&](std::size_t i) {
+    FrameContexts& of_mode = i == 0 ? of_neighbours_ : of_motions_;
+    of_mode.start_frame(recon.place(), depth);
+    of_residuals[i] = costs(of_mode, i == 0 ? wanted_ : left_);
+  });
+  choose_modes(of_residuals[0], of_residuals[1], contexts, patches);
+  return patches;
+}
+
+// Of the whole motion, its offset alone, and the last motion: by what they leave, and bits.
+PatchMotion PatchSearch::cheapest_motion(std::size_t patch, std::span<const double> xyz,
+                                         std::uint32_t depth, const FrameRecon& recon,
+                                         PatchContexts& contexts) {
+  const PatchMotion all = fit(patch, xyz, depth, recon);
+  PatchMotion offset = all;
+  std::fill(offset.residual.begin() + kOffsetValues, offset.residual.end(), 0);
+  PatchMotion cheapest;
+  double least = std::numeric_limits<double>::max();
+  for (const PatchMotion& candidate : {all, offset, PatchMotion{}}) {
+    const double cost = error(patch, xyz, depth, recon, candidate, nullptr) / kLambda +
+                        motion_bits(contexts, candidate);
+    if (cost >= least) continue;
+    least = cost;
+    cheapest = candidate;
+  }
+  error(patch, xyz, depth, recon, cheapest, &left_);
+  return cheapest;
+}
+
+// patches: their motions; the motions of those that do not follow them are taken away.
+void PatchSearch::choose_modes(const Costs& of_neighbours, const Costs& of_motion,
+                               PatchContexts contexts, FramePatches& patches) const {
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    contexts.start(p);
+    std::array<double, kPatchModes> cost{of_neighbours[p], of_motion[p], cost_alone(p)};
+    const double bits = motion_bits(contexts, patches[p]);
+    for (int mode = 0; mode < kPatchModes; ++mode) {
+      double& of_mode = cost[static_cast<std::size_t>(mode)];
+      of_mode += mode_bits(contexts, mode) + (mode > 0 ? bits : 0.0);
+    }
+    const auto cheapest = std::min_element(cost.begin(), cost.end()) - cost.begin();
+    patches[p].mode = static_cast<PatchMode>(cheapest);
+    if (patches[p].mode == PatchMode::kNeighbours) patches[p].residual = {};
+    adapt(contexts, patches[p]);
+  }
+}
+
+// Without residuals, in bits.
+double PatchSearch::cost_alone(std::size_t patch) const {
+  double error = 0.0;
+  for (const std::uint32_t v : vertices_[patch]) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double left = left_[3 * std::size_t{v} + c];
+      if (std::abs(left) > most_alone_) return std::numeric_limits<double>::max();
+      error += left * left;
+    }
+  }
+  return error / kLambda;
+}
+
+PatchSearch::Costs PatchSearch::costs(FrameContexts& contexts,
+                                      const std::vector<double>& wanted) const {
+  Costs costs(vertices_.size(), 0.0);
+  std::uint32_t first = 0;
+  for (std::size_t j = 0; j < settings_.layer_group_size.size(); ++j) {
+    contexts.start_group(j);
+    const std::uint32_t end = first + settings_.layer_group_size[j];
+    for (const std::uint32_t v : mesh_.vertices_of_layers(first, end)) {
+      contexts.start(v);
+      BitCost bits;
+      double error = 0.0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double of_axis = wanted[3 * std::size_t{v} + c];
+        const std::int32_t residual =
+            settings_.exact_flag
+                ? rounded_residual(of_axis, 0.5)
+                : cheaper_residual(contexts.models(), contexts.expected(), of_axis);
+        write_residual(bits, contexts.models(), contexts.expected(), residual);
+        contexts.update(residual);
+        if (!settings_.exact_flag) error += (of_axis - residual) * (of_axis - residual);
+      }
+      costs[settings_.patch_of_vertex[v]] += bits.bits() + error / kLambda;
+    }
+    first = end;
+  }
+  return costs;
+}
+
+// Closed loop, with residuals rounded without models.
+void PatchSearch::predict_from_neighbours(std::span<const double> xyz, FrameRecon& recon) {
+  const double round_up = settings_.exact_flag ? 0.5 : 0.5 - kDeadZone;
+  for (std::uint32_t layer = 0; layer < mesh_.num_layers(); ++layer) {
+    const auto vertices = mesh_.vertices_of_layers(layer, layer + 1);
+    const auto predict = [&](std::size_t first, std::size_t end) {
+      VertexMotion motion;
+      for (std::size_t i = first; i < end; ++i) {
+        const std::uint32_t v = vertices[i];
+        recon.predict(v, motion);
+        Vec3i residual{};
+        for (std::size_t c = 0; c < 3; ++c) {
+          const std::size_t own = 3 * std::size_t{v} + c;
+          const double value = settings_.exact_flag ? on_grid(xyz[own]) : xyz[own];
+          wanted_[own] = (value * kPoint - recon.start_of(v, motion, c)) / step_of(recon, v);
+          residual[c] = rounded_residual(wanted_[own], round_up);
+        }
+        recon.set(v, motion, recon.position(v, motion, residual));
+      }
+    };
+    if (layer == 0) {
+      predict(0, vertices.size());
+    } else {
+      for_ranges(vertices.size(), kTogether, predict);
+    }
+  }
+}
+
+// Least squares: what the last motion of the patch leaves.
+PatchMotion PatchSearch::fit(std::size_t patch, std::span<const double> xyz,
+                             std::uint32_t depth, const FrameRecon& recon) const {
+  const auto reference = recon.reference();
+  const PatchRecon& patches = recon.patches();
+  const Vec3i centre = patches.centre(patch);
+  const auto reach = static_cast<double>(patches.reach(patch));
+  const PatchRecon::Motion& last = patches.last_motion(depth, patch);
+  std::array<SmallSystem<4>, 3> systems;
+  for (const std::uint32_t v : vertices_[patch]) {
+    std::array<double, 4> x{0.0, 0.0, 0.0, 1.0};
+    for (std::size_t k = 0; k < 3; ++k) {
+      x[k] = (static_cast<double>(reference[3 * std::size_t{v} + k]) - centre[k]) / reach;
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t own = 3 * std::size_t{v} + c;
+      double left = xyz[own] * kPoint - reference[own] - last[c];
+      for (std::size_t k = 0; k < 3; ++k) {
+        left -= last[kOffsetValues + 3 * c + k] / kMatrixOne * x[k] * reach;
+      }
+      for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) systems[c].a[i][j] += x[i] * x[j];
+        systems[c].b[i] += x[i] * left;
+      }
+    }
+  }
+  const double step = settings_.step[depth] * kMotionStep;
+  PatchMotion motion;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double ridge = kRidge * static_cast<double>(vertices_[patch].size());
+    for (std::size_t k = 0; k < 3; ++k) systems[c].a[k][k] += ridge;
+    const auto solved = solve_small(systems[c]);
+    motion.residual[c] = rounded_residual(solved.x[3] / step, 0.5);
+    for (std::size_t k = 0; k < 3; ++k) {
+      motion.residual[kOffsetValues + 3 * c + k] = rounded_residual(solved.x[k] / step, 0.5);
+    }
+  }
+  return motion;
+}
+
+// The squared error of a motion, in squared steps; `left`, if given, gets the residuals. They
+// are those from the decoder's integers: with other rounding, a patch without residuals would
+// be taken for exact though some of its coordinates are one step off.
+double PatchSearch::error(std::size_t patch, std::span<const double> xyz, std::uint32_t depth,
+                          const FrameRecon& recon, const PatchMotion& motion,
+                          std::vector<double>* left) const {
+  const auto moved =
+      recon.patches().motion(patch, depth, settings_.step[depth], motion.residual);
+  double sum = 0.0;
+  for (const std::uint32_t v : vertices_[patch]) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t own = 3 * std::size_t{v} + c;
+      std::int64_t at = recon.patches().moved(moved, v, c);
+      double value = xyz[own] * kPoint;
+      if (settings_.exact_flag) {
+        value = on_grid(xyz[own]) * kPoint;
+        at = to_grid(at);
+      }
+      const double of_axis = (value - static_cast<double>(at)) / step_of(recon, v);
+      if (left != nullptr) (*left)[own] = of_axis;
+      sum += of_axis * of_axis;
+    }
+  }
+  return sum;
+}
+
+}  // namespace rlpc

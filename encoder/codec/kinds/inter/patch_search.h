@@ -1,0 +1,59 @@
+// Chooses the motion of patches in a frame, and the mode of each patch by its cost.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/codec/kinds/inter/frame_contexts.h"
+#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/kinds/inter/patch_contexts.h"
+#include "common/codec/kinds/inter/recon/frame_recon.h"
+#include "common/codec/mesh/coded_mesh.h"
+
+namespace rlpc {
+
+class PatchSearch {
+ public:
+  // The mesh must have layers; mesh and settings, which have patches, must outlive it.
+  // to_nearest: residuals are rounded to nearest, and no coordinate errs by more than that.
+  PatchSearch(const CodedMesh& mesh, const FrameSettings& settings, bool to_nearest);
+
+  // Of the frame that recon has started, not the first of its GOF; xyz [num_vertices][3], in
+  // grid units. contexts: those of the writer, which has started the frame. Predicts all
+  // vertices from neighbours, for comparison, which leaves no trace in recon once the frame is
+  // coded. Takes about as long as to code it.
+  FramePatches choose(std::span<const double> xyz, std::uint32_t depth,
+                      const PatchContexts& contexts, FrameRecon& recon);
+
+ private:
+  using Costs = std::vector<double>;  // [num_patches], in bits
+
+  void predict_from_neighbours(std::span<const double> xyz, FrameRecon& recon);
+  PatchMotion cheapest_motion(std::size_t patch, std::span<const double> xyz,
+                              std::uint32_t depth, const FrameRecon& recon,
+                              PatchContexts& contexts);
+  void choose_modes(const Costs& of_neighbours, const Costs& of_motion, PatchContexts contexts,
+                    FramePatches& patches) const;
+  double cost_alone(std::size_t patch) const;
+  PatchMotion fit(std::size_t patch, std::span<const double> xyz, std::uint32_t depth,
+                  const FrameRecon& recon) const;
+  double error(std::size_t patch, std::span<const double> xyz, std::uint32_t depth,
+               const FrameRecon& recon, const PatchMotion& motion,
+               std::vector<double>* left) const;
+  Costs costs(FrameContexts& contexts, const std::vector<double>& wanted) const;
+
+  const CodedMesh& mesh_;
+  const FrameSettings& settings_;
+  double most_alone_;  // error of a coordinate of a patch without residuals, in steps
+  std::vector<std::vector<std::uint32_t>> vertices_;  // of each patch
+  // [num_vertices][3]: residuals in steps, from neighbours and from motions.
+  std::vector<double> wanted_;
+  std::vector<double> left_;
+  // As if all vertices were predicted in one way in all frames: what a mode has cost a patch
+  // does not depend on the mode that was chosen for it.
+  FrameContexts of_neighbours_;
+  FrameContexts of_motions_;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,220 @@
+#include "encoder/codec/kinds/skinned/quantise/skinned_gof_encoder.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "common/codec/kinds/cluster/cluster_gof.h"
+#include "common/codec/kinds/skinned/recon/skinned_recon.h"
+#include "common/codec/syntax/sequence_header.h"
+#include "encoder/codec/kinds/skinned/quantise/slice_cuts.h"
+#include "encoder/codec/kinds/skinned/quantise/span_tracks.h"
+#include "encoder/codec/kinds/skinned/quantise/spatial_values.h"
+#include "encoder/codec/kinds/skinned/quantise/temporal_values.h"
+#include "encoder/codec/math/det_math.h"
+#include "encoder/codec/spans/component_cost.h"
+
+namespace rlpc {
+namespace {
+
+// Temporal values are scaled so that their step is 2^3 units of the sums, if possible.
+constexpr int kWantedScaleIdx = 56;  // fixed: format
+
+// The frames of a GOF, `first` being that after the GOF before.
+std::span<const Vec3i> frames_of(const SkinnedGof& gof, std::span<const Vec3i> values,
+                                 std::size_t& first) {
+  first += gof.num_frames;
+  return values.subspan(first - gof.num_frames, gof.num_frames);
+}
+
+// False if a temporal value exceeds the maximum width; the sums then need fewer fraction bits.
+bool set_temporal_widths(const std::vector<int>& idx, int fraction_bits,
+                         std::span<const SkinnedGof> gofs, TemporalValues& temporal) {
+  for (std::size_t l = 0; l < temporal.size(); ++l) {
+    std::size_t first = 0;
+    for (std::size_t g = 0; g < gofs.size(); ++g) {
+      Trajectory& t = temporal.of_gof[g][l];
+      const auto values = frames_of(gofs[g], temporal.indices[l], first);
+      if (!t.trajectory_flag) continue;
+      if (!set_scale(idx[l] + 8 * fraction_bits, values, t)) return false;
+    }
+  }
+  return true;
+}
+
+// Sets widths and scales of the trajectories, with as many fraction bits in the sums as all
+// temporal factors need, or as many as are given. Returns 0, or if the range of scales is too
+// large, the excess in eighths of an octave. None: values are too large for the fraction bits.
+std::optional<int> set_scales(const std::vector<std::int32_t>& largest,
+                              std::span<const SkinnedGof> gofs, std::optional<int> given,
+                              TemporalValues& temporal, int& fraction_bits) {
+  std::vector<int> idx(temporal.size());
+  fraction_bits = 0;
+  for (std::size_t l = 0; l < idx.size(); ++l) {
+    const int spatial_bits = signed_width(largest[l]);
+    for (auto& trajectories : temporal.of_gof) trajectories[l].spatial_bits = spatial_bits;
+    const int shift = spatial_factor_bits(spatial_bits) - spatial_bits;
+    idx[l] = temporal.eighths[l] + 8 * (4 - shift);
+    fraction_bits = std::max(fraction_bits, (kWantedScaleIdx - idx[l] + 7) / 8);
+  }
+  const int most = *std::max_element(idx.begin(), idx.end());
+  fraction_bits = std::clamp(fraction_bits, 0, kMaxFractionBits);
+  while (fraction_bits > 0 && most + 8 * fraction_bits > kMaxScaleIdx) --fraction_bits;
+  if (given && most + 8 * *given > kMaxScaleIdx) return std::nullopt;
+  if (given) fraction_bits = *given;
+  const int lacking = -(*std::min_element(idx.begin(), idx.end()) + 8 * fraction_bits);
+  if (lacking > 0) return lacking;
+  while (!set_temporal_widths(idx, fraction_bits, gofs, temporal)) {
+    if (given) return std::nullopt;
+    --fraction_bits;
+  }
+  return 0;
+}
+
+// Residuals of trajectories, [num_vertices][trajectory], and their slices.
+struct CodedTrajectories {
+  std::vector<std::int32_t> residual;
+  SliceCuts cuts;
+};
+
+// The bits of the spatial factors of the leading components, from what prediction leaves.
+double expected_spatial_bits(const SkinnedAnalysis& analysis, std::size_t count, double step) {
+  const std::size_t width = analysis.pc.temporal.size();
+  const std::size_t places = analysis.spatial_left.size() / width;
+  const double error = step * step / 12.0;
+  double bits = 0.0;
+  for (std::size_t i = 0; i < places; ++i) {
+    for (std::size_t l = 0; l < count; ++l) {
+      bits += 0.5 * det_log2(1.0 + analysis.spatial_left[i * width + l] / error);
+    }
+  }
+  return bits * static_cast<double>(analysis.rest[0].size()) / static_cast<double>(places);
+}
+
+// Adds trajectories to a span. Coarsens the steps if values do not fit their widths.
+// shared: the skinned model of a local component group, or null; if values do not fit its
+// fraction bits, there are no trajectories.
+CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                                    const SkinnedSettings& settings, double step,
+                                    const ModelRecon* shared, CodedSpan& coded) {
+  constexpr double kReserve = 1.02;  // fixed: the next try fits
+  SkinnedModel& model = coded.model;
+  std::optional<int> fraction_bits;
+  if (shared != nullptr) fraction_bits = model.fraction_bits;
+  TemporalLimits limits{
+      std::min<std::size_t>(settings.max_trajectories, kLevels.back().max_components)};
+  for (;;) {
+    TemporalValues temporal = code_temporal_values(analysis, settings, step, limits);
+    if (temporal.size() == 0) return {{}, choose_slice_cuts(settings, 0.0, 0)};
+    const std::size_t count = temporal.size();
+    if (shared == nullptr) model.weights.num_adaptive_factors = 0;
+    if (shared == nullptr && model.prediction == Prediction::kLayers) {
+      model.weights.num_adaptive_factors =
+          std::min(settings.num_adaptive_factors, static_cast<std::uint32_t>(count));
+    }
+    constexpr double kAdaptive =
+        0.42;  // fixed: of the bits, with adaptive weights; an estimate
+    const double bits = expected_spatial_bits(analysis, temporal.num_tried, step) *
+                        (model.weights.num_adaptive_factors > 0 ? kAdaptive : 1.0);
+    SliceCuts cuts = choose_slice_cuts(settings, bits, count);
+    SpatialValues spatial = code_spatial_values(mesh, model, analysis, temporal, cuts.group_end,
+                                                shared, settings.rounding, step);
+    if (spatial.excess > 1.0) {
+      step *= kReserve * spatial.excess;
+      continue;
+    }
+    const std::optional<int> lacking =
+        set_scales(spatial.largest, coded.gofs, fraction_bits, temporal, model.fraction_bits);
+    if (!lacking) return {{}, {}};
+    if (*lacking == 0) {
+      model.trajectories.resize(count);
+      for (std::size_t l = 0; l < count; ++l) {
+        model.trajectories[l].spatial_bits = temporal.of_gof[0][l].spatial_bits;
+      }
+      for (std::size_t g = 0; g < coded.gofs.size(); ++g) {
+        coded.gofs[g].trajectories = std::move(temporal.of_gof[g]);
+      }
+      if (settings.draft) coded.values = std::move(spatial.values);
+      return {std::move(spatial.residual), std::move(cuts)};
+    }
+    limits.least_eighths =
+        *std::min_element(temporal.eighths.begin(), temporal.eighths.end()) + *lacking;
+  }
+}
+
+}  // namespace
+
+bool has_trajectories(std::size_t count, const SkinnedAnalysis& analysis,
+                      const SkinnedSettings& settings, double step) {
+  return code_temporal_values(analysis, settings, step, {count}).size() == count;
+}
+
+double expected_squared_error(const SkinnedAnalysis& analysis, double step) {
+  const auto num_vertices = static_cast<double>(analysis.rest[0].size());
+  std::size_t num_frames = 0;
+  for (const SkinnedGof& gof : analysis.gofs) num_frames += gof.num_frames;
+  double error = analysis.pc.total_energy;
+  for (const double energy : analysis.pc.energy) {
+    error -= energy - expected_component_error(energy, num_vertices,
+                                               static_cast<double>(num_frames), step);
+  }
+  return error;
+}
+
+CodedSpan code_skinned_span(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                            const SkinnedSettings& settings, double step) {
+  CodedSpan coded{analysis.model, analysis.gofs};
+  SkinnedModel& model = coded.model;
+  model.weights = {settings.damping_log2, settings.outer_weight, settings.outer_scale};
+  const CodedTrajectories trajectories =
+      code_trajectories(mesh, analysis, settings, step, nullptr, coded);
+  cut_slices(mesh, settings, trajectories.cuts, trajectories.residual, model);
+  return coded;
+}
+
+LocalGroup code_local_group(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                            const ModelRecon& shared, SkinnedSettings settings, double step) {
+  settings.component_groups = 1;
+  CodedSpan coded{analysis.model, analysis.gofs};
+  CodedTrajectories trajectories =
+      code_trajectories(mesh, analysis, settings, step, &shared, coded);
+  return {std::move(coded.gofs.front().trajectories), std::move(trajectories.residual)};
+}
+
+void add_local_group(LocalGroup group, SkinnedGof& gof) {
+  if (group.trajectories.empty()) return;
+  ++gof.num_local_groups;
+  gof.group_end.push_back(gof.group_end.back() + group.trajectories.size());
+  gof.slice_layers.push_back(static_cast<std::uint32_t>(gof.layer_group_size.size()));
+  gof.vertex_residual.resize(gof.num_local_groups);
+  gof.vertex_residual.push_back(std::move(group.residual));
+  for (Trajectory& t : group.trajectories) gof.trajectories.push_back(std::move(t));
+}
+
+SkinnedGof merge_into_gof(CodedSpan coded) {
+  SkinnedGof gof = std::move(coded.gofs.front());
+  std::vector<Bone> bones = std::move(gof.bones);
+  std::vector<Trajectory> trajectories = std::move(gof.trajectories);
+  static_cast<SkinnedModel&>(gof) = std::move(coded.model);
+  gof.bones = std::move(bones);
+  gof.trajectories = std::move(trajectories);
+  return gof;
+}
+
+void use_model(std::shared_ptr<const SkinnedModel> model, SkinnedGof& gof) {
+  gof.kind = GofKind::kTracks;
+  gof.fraction_bits = model->fraction_bits;
+  gof.weight_bits = model->weight_bits;
+  gof.prediction = model->prediction;
+  gof.weights = model->weights;
+  gof.layer_group_size = model->layer_group_size;
+  gof.layer_step = model->layer_step;
+  gof.num_component_groups = model->num_component_groups;
+  gof.group_end = {model->group_end.back()};
+  gof.slice_layers = model->slice_layers;
+  gof.model = std::move(model);
+}
+
+}  // namespace rlpc

@@ -1,0 +1,59 @@
+// Quantisation of a span of skinned GOFs: trajectories, their spatial factors, and the division
+// into slices (inverse of clauses 8.10, 8.11 and 8.14).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/codec/kinds/skinned/recon/model_recon.h"
+#include "common/codec/kinds/skinned/skinned_gof.h"
+#include "common/codec/mesh/coded_mesh.h"
+#include "encoder/codec/kinds/skinned/quantise/skinned_analysis.h"
+
+namespace rlpc {
+
+// Whether at least `count` principal components are worth coding as trajectories. count: above
+// 0.
+bool has_trajectories(std::size_t count, const SkinnedAnalysis& analysis,
+                      const SkinnedSettings& settings, double step);
+
+// Estimates the squared error of a GOF with one bone: each component adds about its energy or
+// its quantisation error, whichever is smaller. The actual error is 0.6 to 1.6 times the
+// estimate, a factor that is almost independent of the step.
+double expected_squared_error(const SkinnedAnalysis& analysis, double step);
+
+// A span as coded: what its GOFs share, and what each has of its own.
+struct CodedSpan {
+  SkinnedModel model;
+  std::vector<SkinnedGof> gofs;  // bones and trajectories with their motion, nothing else
+  // Of a draft: spatial values as decoded, [num_vertices][trajectory].
+  std::vector<std::int32_t> values = {};
+};
+
+// Quantises the trajectories and completes the span. step: quantiser step, grid units.
+CodedSpan code_skinned_span(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                            const SkinnedSettings& settings, double step);
+
+// The only GOF of a span, with vertices of its own.
+SkinnedGof merge_into_gof(CodedSpan coded);
+// Trajectories that a GOF of tracks has besides those of its skinned model.
+struct LocalGroup {
+  std::vector<Trajectory> trajectories;  // empty: none is worth its bits
+  std::vector<std::int32_t> residual;    // [num_vertices][trajectory]
+};
+
+// Codes principal components as a local component group.
+//
+//   analysis  of a single GOF: what its skinned model leaves; model: that, without trajectories
+//   shared    the skinned model
+LocalGroup code_local_group(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+                            const ModelRecon& shared, SkinnedSettings settings, double step);
+// Adds a local component group, unless it is empty, to a GOF of tracks.
+void add_local_group(LocalGroup group, SkinnedGof& gof);
+
+// Makes a GOF of a span a GOF of tracks.
+void use_model(std::shared_ptr<const SkinnedModel> model, SkinnedGof& gof);
+
+}  // namespace rlpc

@@ -1,0 +1,35 @@
+// Codes the motion of the bones of a span, GOF by GOF (inverse of 8.12).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/codec/kinds/skinned/recon/bones.h"
+#include "common/codec/kinds/skinned/skinned_gof.h"
+#include "encoder/codec/kinds/skinned/tracks/track_coding.h"
+#include "encoder/codec/spans/gof_frames.h"
+
+namespace rlpc {
+
+// The GOFs of a span, without bones and trajectories.
+std::vector<SkinnedGof> gofs_of_span(const GofFrames& frames, int track_levels);
+
+class SpanBones {
+ public:
+  // Keeps a reference to the GOFs, to which it adds bones.
+  SpanBones(std::vector<SkinnedGof>& gofs, const TrackOptions& options);
+
+  // Codes the next bone, whose flags, pivot, parent and steps are given; wanted: in all frames.
+  void add(const Bone& bone, std::span<const WantedPose> wanted);
+  // The motion of the bones so far as decoded, in all frames of the span.
+  std::vector<BoneMotion>& motions() { return motions_; }
+
+ private:
+  std::vector<SkinnedGof>& gofs_;
+  TrackOptions options_;
+  std::vector<TrackState> rotations_;  // [GOF]
+  std::vector<TrackState> origins_;    // [GOF]
+  std::vector<BoneMotion> motions_;
+};
+
+}  // namespace rlpc

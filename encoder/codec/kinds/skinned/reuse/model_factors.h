@@ -1,0 +1,68 @@
+// The spatial factors of a skinned model as decoded, and the temporal values that suit them
+// best.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "encoder/codec/kinds/skinned/quantise/kept_model.h"
+#include "encoder/codec/kinds/skinned/quantise/mean_motion.h"
+#include "encoder/codec/math/principal_components.h"
+#include "encoder/codec/math/symmetric_system.h"
+#include "encoder/codec/spans/gof_frames.h"
+
+namespace rlpc {
+
+class ModelFactors {
+ public:
+  // Keeps a reference to the model.
+  explicit ModelFactors(const KeptModel& kept);
+
+  std::size_t count() const { return unit_.size(); }
+  // The sum of the squared factors of a trajectory.
+  double energy(std::size_t l) const { return energy_[l]; }
+  // The factors of some vertices, [vertex][trajectory].
+  std::vector<double> of(std::size_t first, std::size_t num_vertices) const;
+  // The temporal values, [trajectory][frames.num_frames of the rows], with which the factors
+  // come closest to the displacements.
+  std::vector<double> fit(const TrajectoryRows& displacement) const;
+
+ private:
+  const KeptModel& kept_;
+  std::vector<double> unit_;  // [trajectory], of normalised factors
+  std::vector<double> energy_;
+  SymmetricSystem system_;
+};
+
+// What the bones of a model leave of some frames and, once temporal values are set, what the
+// trajectories leave, too.
+class ModelRemainder {
+ public:
+  // motions: of the bones in the chosen frames. Keeps references to model, factors and frames.
+  ModelRemainder(const KeptModel& kept, const ModelFactors& factors, const GofFrames& frames,
+                 std::vector<std::uint32_t> chosen, MotionsOfBones motions)
+      : kept_(kept),
+        factors_(factors),
+        frames_(frames),
+        chosen_(std::move(chosen)),
+        motions_(std::move(motions)) {}
+
+  std::size_t width() const { return 3 * chosen_.size(); }
+  // [trajectory][width()]: for each coordinate, the chosen frames.
+  void set_temporal(std::vector<double> temporal);
+  // By vertex; valid as long as the object.
+  TrajectoryRows rows() const;
+
+ private:
+  void write(std::size_t first, std::span<double> rows) const;
+
+  const KeptModel& kept_;
+  const ModelFactors& factors_;
+  const GofFrames& frames_;
+  std::vector<std::uint32_t> chosen_;
+  MotionsOfBones motions_;
+  std::vector<double> negative_;  // of the temporal values; empty: none
+};
+
+}  // namespace rlpc

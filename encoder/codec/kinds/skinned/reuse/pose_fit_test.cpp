@@ -1,0 +1,153 @@
+#include "encoder/codec/kinds/skinned/reuse/pose_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "encoder/codec/kinds/skinned/quantise/mean_motion.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint32_t kVertices = 60;
+
+// Two bones along x that meet in the middle, where vertices follow both.
+struct Arm {
+  Arm() {
+    model.weight_bits = 6;
+    model.bones.resize(2);
+    for (Bone& bone : model.bones) bone.rotation_flag = bone.origin_flag = true;
+    model.bones[1].parent = 0;
+    model.bones[1].pivot = {16 * 3000, 0, 0};
+    for (std::uint32_t v = 0; v < kVertices; ++v) {
+      const std::array<double, 3> p{100.0 * v, 500.0 * std::sin(1.1 * v),
+                                    400.0 * std::cos(2.3 * v)};
+      for (std::size_t c = 0; c < 3; ++c) {
+        rest[c].push_back(static_cast<std::int32_t>(std::lround(16.0 * p[c])));
+      }
+      Influences& of = model.influences.emplace_back();
+      const int second = v < 25 ? 0 : v < 35 ? 6 * static_cast<int>(v - 24) - 2 : 64;
+      if (second < 64) of.list[of.size++] = {0, static_cast<std::uint16_t>(64 - second)};
+      if (second > 0) of.list[of.size++] = {1, static_cast<std::uint16_t>(second)};
+    }
+  }
+
+  // gap: of the joint, along y.
+  std::vector<std::vector<WantedPose>> poses(std::uint32_t num_frames, double gap) const {
+    std::vector<std::vector<WantedPose>> list(2);
+    for (std::uint32_t f = 0; f < num_frames; ++f) {
+      const double half = 0.3 * std::sin(0.5 * f);
+      const double bend = half + 0.4 * std::cos(0.8 * f);
+      const bool turns = model.bones[0].rotation_flag;
+      const double first = turns ? half : 0.0;
+      WantedPose root{{std::cos(first), 0.0, 0.0, std::sin(first)}, {800.0 * f, 100.0, 0.0}};
+      const double c = std::cos(2.0 * first);
+      const double s = std::sin(2.0 * first);
+      WantedPose child{{std::cos(bend), 0.0, 0.0, std::sin(bend)},
+                       {root.origin[0] + c * 48000.0, root.origin[1] + s * 48000.0 + gap, 0.0}};
+      list[0].push_back(root);
+      list[1].push_back(child);
+    }
+    return list;
+  }
+
+  GofFrames moved(const std::vector<std::vector<WantedPose>>& poses) const {
+    GofFrames frames{kVertices, static_cast<std::uint32_t>(poses[0].size()), {}, 0, 1, false};
+    MotionsOfBones motions;
+    for (std::size_t b = 0; b < 2; ++b) {
+      motions.push_back(motions_of(model.bones[b].pivot, poses[b]));
+    }
+    frames.xyz.resize(std::size_t{3} * kVertices * frames.num_frames);
+    MeanMotions means(motions);
+    for (std::uint32_t v = 0; v < kVertices; ++v) {
+      const auto mean = means.of(model.influences[v], model.weight_bits);
+      for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          double x = mean[f].shift[c];
+          for (std::size_t k = 0; k < 3; ++k) x += mean[f].turn[k][c] * rest[k][v] / 16.0;
+          frames.xyz[(std::size_t{f} * kVertices + v) * 3 + c] = x;
+        }
+      }
+    }
+    return frames;
+  }
+
+  SkinnedModel model;
+  std::array<std::vector<std::int32_t>, 3> rest;
+};
+
+void expect_near(const std::vector<std::vector<WantedPose>>& found,
+                 const std::vector<std::vector<WantedPose>>& wanted, double tolerance) {
+  for (std::size_t b = 0; b < wanted.size(); ++b) {
+    ASSERT_EQ(found[b].size(), wanted[b].size());
+    for (std::size_t f = 0; f < wanted[b].size(); ++f) {
+      double same = 0.0;
+      for (std::size_t k = 0; k < 4; ++k)
+        same += found[b][f].rotation[k] * wanted[b][f].rotation[k];
+      EXPECT_NEAR(std::abs(same), 1.0, 1e-4) << b << ' ' << f;
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(found[b][f].origin[c], wanted[b][f].origin[c], tolerance) << b << ' ' << f;
+      }
+    }
+  }
+}
+
+TEST(PoseFit, FindsThePosesOfAllBones) {
+  const Arm arm;
+  const auto wanted = arm.poses(20, 700.0);
+  const GofFrames frames = arm.moved(wanted);
+  const PoseFit fit(arm.model, arm.rest);
+  const auto found = fit.fit(frames, numbers_from(0, 20));
+  expect_near(found, wanted, 16.0);
+  // A single frame starts afresh.
+  const std::uint32_t last = 19;
+  EXPECT_NEAR(fit.fit(frames, std::span(&last, 1))[1][0].origin[0], wanted[1][19].origin[0],
+              16.0);
+}
+
+TEST(PoseFit, QuaternionsKeepTheirSign) {
+  const Arm arm;
+  const GofFrames frames = arm.moved(arm.poses(20, 0.0));
+  for (const auto& of_bone : PoseFit(arm.model, arm.rest).fit(frames, numbers_from(0, 20))) {
+    for (std::size_t f = 1; f < of_bone.size(); ++f) {
+      double same = 0.0;
+      for (std::size_t k = 0; k < 4; ++k) {
+        same += of_bone[f].rotation[k] * of_bone[f - 1].rotation[k];
+      }
+      EXPECT_GT(same, 0.5) << f;
+    }
+  }
+}
+
+TEST(PoseFit, PinnedBonesKeepTheirJoint) {
+  Arm arm;
+  arm.model.bones[1].origin_flag = false;
+  const auto wanted = arm.poses(20, 0.0);
+  expect_near(PoseFit(arm.model, arm.rest).fit(arm.moved(wanted), numbers_from(0, 20)), wanted,
+              16.0);
+  // Where the joint opens, the child still begins where the parent ends.
+  const GofFrames open = arm.moved(arm.poses(20, 900.0));
+  const auto found = PoseFit(arm.model, arm.rest).fit(open, numbers_from(0, 20));
+  const auto motions = motions_of(arm.model.bones[0].pivot, found[0]);
+  for (std::size_t f = 0; f < 20; ++f) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double carried = motions[f].shift[c] + motions[f].turn[0][c] * 3000.0;
+      EXPECT_NEAR(found[1][f].origin[c], 16.0 * carried, 1e-3) << f;
+    }
+  }
+}
+
+TEST(PoseFit, BonesThatDoNotRotateMoveAlong) {
+  Arm arm;
+  arm.model.bones[0].rotation_flag = false;
+  const auto wanted = arm.poses(20, 0.0);
+  const auto found = PoseFit(arm.model, arm.rest).fit(arm.moved(wanted), numbers_from(0, 20));
+  expect_near(found, wanted, 16.0);
+  for (const WantedPose& pose : found[0]) EXPECT_NEAR(pose.rotation[0], 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace rlpc

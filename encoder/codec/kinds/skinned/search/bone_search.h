@@ -1,0 +1,102 @@
+// Chooses the bones of a skinned GOF: how many there are, and how many each vertex may follow.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "encoder/codec/kinds/skinned/fit/bone_fit.h"
+#include "encoder/codec/kinds/skinned/fit/rig.h"
+#include "encoder/codec/kinds/skinned/search/skinned_context.h"
+#include "encoder/codec/kinds/skinned/search/skinned_trial.h"
+#include "encoder/codec/spans/gof_frames.h"
+
+namespace rlpc {
+
+// Bones do not depend on the step, and are fitted once. Which of them are worth their bits
+// does, so that a search may be repeated for another step.
+class BoneSearch {
+ public:
+  // Keeps references to all arguments.
+  BoneSearch(const SkinnedContext& context, const GofFrames& frames);
+
+  // Called after each stage with the fraction done, 0 to 1, of all work on the span.
+  void set_progress(const std::function<void(double)>& progress) { progress_ = progress; }
+  // A single bone, without encoding it: whichever is expected to cost less, one that rotates or
+  // one that only translates.
+  Rig guess_one_bone(double step);
+  // What is expected to be the cheapest.
+  SkinnedCandidate likeliest(double step);
+  // The analysis of a draft of one_bone(), if likeliest() needed one; or null.
+  const SkinnedAnalysis* analysis_of_one() const { return one_ ? &*one_ : nullptr; }
+  // The best trial over all numbers of bones. wanted_error: squared, if it is the target.
+  SkinnedTrial search(const SkinnedTrials& trials, std::optional<double> wanted_error);
+  // The sum of squared distances of all vertices from the centres of their frames, about; after
+  // a trial.
+  double squared_spread() const;
+  // Frees the fitted bones; for after the last search.
+  void release() {
+    growths_.clear();
+    one_.reset();
+  }
+
+ private:
+  // Bones of different numbers, with a maximum number of them for each vertex.
+  struct Growth {
+    std::uint32_t influences;
+    std::unique_ptr<BoneFit> fit;
+    struct Bones {
+      std::uint32_t count = 0;  // that were asked for
+      BoneSolver state;         // while they can be exchanged
+      ResidualSpectrum spectrum;
+      std::optional<BoneSolver> settled = {};  // the same, with the best rest positions
+      bool polished = false;  // there is nothing to gain from further exchanges
+    };
+    std::vector<Bones> bones = {};  // the first: a single one
+  };
+  struct Candidate {
+    std::size_t growth;
+    std::size_t bones;      // index
+    double expected;        // cost
+    bool is_likely = true;  // by that cost
+  };
+
+  Growth start(std::uint32_t influences) const;
+  void start_all();
+  void grow_all(double step);
+  double translation_cost(double step) const;
+  double one_bone_cost(double step) const;
+  double worth_trying(double step) const;
+  double expected_cost(const Growth& growth, const Growth::Bones& bones, double step) const;
+  SkinnedCandidate one_bone(double step);
+  SkinnedCandidate candidate(Growth& growth, Growth::Bones& bones, double step) const;
+  SkinnedTrial try_one_bone(const SkinnedTrials& trials);
+  SkinnedTrial try_requested(const SkinnedTrials& trials);
+  std::vector<Candidate> candidates(double step);
+  bool is_better(const SkinnedTrial& second, const SkinnedTrial& first,
+                 const SkinnedTrials& trials, double wanted_error) const;
+  static bool is_clearly_better(const SkinnedTrial& draft, const SkinnedTrial& other);
+  std::size_t best_of(std::span<const BestTrial> drafts, const SkinnedTrials& trials,
+                      std::optional<double> wanted_error) const;
+  BestTrial polish(const SkinnedTrials& trials, const Candidate& chosen);
+
+  const SkinnedContext& context_;
+  const GofFrames& frames_;
+  SkinnedSettings settings_;
+  std::uint32_t max_influences_;
+  std::uint32_t search_influences_;  // maximum bones per vertex while bones are fitted
+  std::vector<Growth> growths_;
+  ResidualSpectrum translation_;  // of a single bone that only translates
+  // Of a single bone, of which the expected cost leaves out what adaptive weights predict; at
+  // most 1, as other errors of the estimate are those of all bones.
+  double actual_to_expected_ = 1.0;
+  bool is_compared_ = false;            // that is known
+  std::optional<SkinnedAnalysis> one_;  // of a draft of a single bone
+  std::function<void(double)> progress_ = [](double) {};
+};
+
+}  // namespace rlpc

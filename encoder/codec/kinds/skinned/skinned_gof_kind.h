@@ -1,0 +1,15 @@
+// Registers skinned GOFs as a kind of GOF: bones, and trajectories for the residual of bone
+// motion (clauses 6.11, 6.12 and 8.9 to 8.14).
+#pragma once
+
+#include <memory>
+
+#include "encoder/codec/spans/gof_kind.h"
+
+namespace rlpc {
+
+// Null for the Baseline profile.
+std::unique_ptr<GofEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
+                                                  const EncoderSettings& settings);
+
+}  // namespace rlpc

@@ -1,0 +1,45 @@
+// Codes the tracks of bones and trajectories in closed loop, with residuals and predictors
+// chosen by rate and distortion (inverse of 8.12 and 8.14.2).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/codec/kinds/skinned/recon/bones.h"
+#include "common/codec/kinds/skinned/skinned_gof.h"
+#include "encoder/codec/kinds/skinned/tracks/track_state.h"
+
+namespace rlpc {
+
+struct TrackOptions {
+  bool refine = true;        // also try transmitted weights, fitted to the series
+  bool nearest = false;      // round residuals to nearest; else errors are below one step
+  int track_levels = 0;      // of the GOF; above 0, hierarchical orders are tried, too
+  bool only_levels = false;  // of those alone: what is to be cut must be in levels
+  bool fast = false;   // fewer predictors, and fewer survivors in the search for residuals
+  bool draft = false;  // the likeliest predictor, and no search: to compare candidates
+};
+
+// Codes a trajectory: sets predictor, weights and residuals, advances the state, and returns
+// the cost.
+//
+//   values  [num_frames], 3 coordinates each
+//   step    quantiser step, in the unit of the values
+TrackCost code_trajectory(std::span<const std::array<double, 3>> values, double step,
+                          const TrackOptions& options, TrackState& state,
+                          Trajectory& trajectory);
+
+// The pose of a bone in a frame before quantisation, in world coordinates and 1/16 grid units.
+struct WantedPose {
+  std::array<double, 4> rotation{1.0, 0.0, 0.0, 0.0};  // w, x, y, z; of unit length
+  std::array<double, 3> origin{};                      // position of the pivot
+};
+
+// Codes a bone whose flags, pivot, parent and steps are given: sets orders and residuals,
+// advances the states, and returns the motion that a decoder recovers.
+BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent,
+                     const TrackOptions& options, TrackState& rotations, TrackState& origins,
+                     Bone& bone);
+
+}  // namespace rlpc

@@ -1,0 +1,33 @@
+// Refines a division of a graph in two (Kernighan and Lin 1970, Fiduccia and Mattheyses 1982).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "encoder/codec/partition/graph.h"
+
+namespace rlpc {
+
+using Sides = std::vector<std::uint8_t>;  // 0 or 1, of each vertex
+using SideWeights = std::array<std::int64_t, 2>;
+
+// Moves vertices one by one, also where that cuts more edges at first, and keeps the moves up
+// to the best state: first the least weight above `most` of a side, then the least weight of
+// cut edges. Repeats that while it helps.
+void refine_bisection(const Graph& graph, const SideWeights& most, Sides& side);
+
+// The weight of edges between sides, or between parts.
+template <typename Part>
+std::int64_t cut_weight(const Graph& graph, const std::vector<Part>& part) {
+  std::int64_t cut = 0;
+  for (std::uint32_t v = 0; v < graph.num_vertices(); ++v) {
+    for (std::uint32_t e = graph.first[v]; e < graph.first[v + 1]; ++e) {
+      const std::uint32_t u = graph.neighbour[e];
+      if (v < u && part[v] != part[u]) cut += graph.edge_weight[e];
+    }
+  }
+  return cut;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,60 @@
+#include "encoder/codec/rest/counterpart_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "common/codec/mesh/coded_meshes.h"
+#include "common/codec/mesh/topology.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint32_t kWidth = 40;
+constexpr std::uint32_t kStep = 24;
+constexpr int kPositionBits = 20;
+
+// A smooth sheet: all its squares have nearly the same shape.
+struct Sheet {
+  std::vector<Triangle> triangles;
+  std::vector<std::int32_t> wanted;
+
+  Sheet() {
+    for (std::uint32_t y = 0; y < kWidth; ++y) {
+      for (std::uint32_t x = 0; x < kWidth; ++x) {
+        const double height = 200.0 * std::sin(0.05 * x) * std::sin(0.04 * y);
+        wanted.insert(wanted.end(),
+                      {static_cast<std::int32_t>(1000 * x), static_cast<std::int32_t>(1000 * y),
+                       static_cast<std::int32_t>(height)});
+        if (x + 1 == kWidth || y + 1 == kWidth) continue;
+        const std::uint32_t v = y * kWidth + x;
+        triangles.push_back({v, v + 1, v + kWidth + 1});
+        triangles.push_back({v, v + kWidth + 1, v + kWidth});
+      }
+    }
+  }
+};
+
+// Without a bound, 97 % of the vertices find candidates, hundreds each, and follow them.
+TEST(CounterpartSearch, RestsAfterLongSearches) {
+  const Sheet sheet;
+  const Topology topology = make_topology(kWidth * kWidth, sheet.triangles);
+  const CodedMeshes meshes(topology, sheet.triangles);
+  const RestOrder& order = meshes[Prediction::kLayers].rest_order();
+  CounterpartSearch search(order, sheet.wanted, kStep, kPositionBits);
+  Counterparts counterparts(order);
+  std::uint32_t found = 0;
+  for (const std::uint32_t v : order.order()) {
+    counterparts.start(v);
+    if (search.find(v, counterparts)) ++found;
+    counterparts.finish(false);
+    search.add(v);
+  }
+  EXPECT_GT(found, 0U);
+  EXPECT_LT(found, kWidth * kWidth / 2);
+}
+
+}  // namespace
+}  // namespace rlpc

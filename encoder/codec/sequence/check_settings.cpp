@@ -1,0 +1,305 @@
+#include "encoder/codec/sequence/check_settings.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "common/codec/attributes/attribute_set.h"
+#include "common/codec/kinds/skinned/skinned_gof.h"
+#include "common/codec/syntax/sequence_header.h"
+#include "encoder/codec/kinds/inter/check_frame_pattern.h"
+
+namespace rlpc {
+namespace {
+
+struct Parameter {
+  const char* option;  // of rlpcenc
+  bool given;          // differs from the default
+};
+
+// The structured binding names all members: a new member does not compile until it is added
+// here.
+std::vector<Parameter> parameters(const BaselineTools& tools) {
+  const auto& [clusters, rdo, rate_in_vectors, qu, qc, qdelta, frame_mode, seed_mode, partition,
+               motion] = tools;
+  const BaselineTools defaults;
+  return {{"--clusters", clusters != defaults.clusters},
+          {"--no-rdo", rdo != defaults.rdo},
+          {"--rdo-rate", rate_in_vectors != defaults.rate_in_vectors},
+          {"--qu", qu != defaults.qu},
+          {"--qc", qc != defaults.qc},
+          {"--qdelta", qdelta != defaults.qdelta},
+          {"--frame", frame_mode != defaults.frame_mode},
+          {"--seeds", seed_mode != defaults.seed_mode},
+          {"--partition", partition != defaults.partition},
+          {"--motion", motion != defaults.motion}};
+}
+
+std::vector<Parameter> parameters(const MainTools& tools) {
+  const auto& [bones, prediction, influences, geometry_weights, outer_ring, layer_steps,
+               temporal_weights, adaptive_factors, rest, track_levels, temporal_layers,
+               cobra_steps, clusters, component_groups, layer_groups] = tools;
+  const MainTools defaults;
+  return {{"--bones", bones != defaults.bones},
+          {"--prediction", prediction != defaults.prediction},
+          {"--influences", influences != defaults.influences},
+          {"--no-geometry-weights", geometry_weights != defaults.geometry_weights},
+          {"--no-outer-ring", outer_ring != defaults.outer_ring},
+          {"--no-layer-steps", layer_steps != defaults.layer_steps},
+          {"--no-temporal-weights", temporal_weights != defaults.temporal_weights},
+          {"--basis-steps", cobra_steps != defaults.cobra_steps},
+          {"--no-clusters", clusters != defaults.clusters},
+          {"--component-groups", component_groups != defaults.component_groups},
+          {"--layer-groups", layer_groups != defaults.layer_groups}};
+}
+
+// Those that the Main profile does not have.
+std::vector<Parameter> parameters_of_high(const MainTools& tools) {
+  const MainTools defaults;
+  return {{"--adaptive-factors", tools.adaptive_factors != defaults.adaptive_factors},
+          {"--rest", tools.rest != defaults.rest},
+          {"--track-levels", tools.track_levels != defaults.track_levels},
+          {"--temporal-layers", tools.temporal_layers != defaults.temporal_layers}};
+}
+
+// Rejects parameters of the other profile, which would have no effect.
+std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
+                                       const std::string& profile) {
+  for (const Parameter& p : parameters) {
+    if (p.given) {
+      return InputError{std::string(p.option) + " needs --profile " + profile +
+                        ": use that, or leave out " + p.option};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<InputError> check_low_delay(const EncoderSettings& s) {
+  if (!s.low_delay) return std::nullopt;
+  if (s.profile != Profile::kHigh) {
+    return InputError{
+        "low delay needs --profile high (version 1.2, in preparation): use that, or leave out "
+        "--low-delay"};
+  }
+  if (s.kinds != KindChoice::kAuto && s.kinds != KindChoice::kFrames) {
+    return InputError{"low delay needs GOFs of frames: leave out --gof-kind"};
+  }
+  if (s.target.kind == Target::kBpvf) {
+    return InputError{
+        "without a delay, a rate cannot be searched for: use --quality, --kg, --max-error or "
+        "--lossless BITS instead of --bpvf"};
+  }
+  const FramePattern::Kind pattern = s.frames.pattern.value_or(FramePattern{}).kind;
+  if (pattern != FramePattern::kPrevious && pattern != FramePattern::kFirst) {
+    return InputError{
+        "low delay needs frames that are coded in their order: use --frame-pattern previous or "
+        "first"};
+  }
+  return std::nullopt;
+}
+
+std::optional<InputError> check_pattern(const EncoderSettings& s) {
+  const std::uint32_t layers = s.frames.temporal_layers;
+  if (!s.frames.pattern && !s.low_delay) {
+    constexpr std::uint32_t kMost = kMaxPatternPeriodLog2 + 1;  // fixed: format
+    if (layers >= 1 && layers <= kMost) return std::nullopt;
+    return InputError{"without --frame-pattern, there are 1 to " + std::to_string(kMost) +
+                      " temporal layers (--temporal-layers)"};
+  }
+  FramePattern pattern = s.frames.pattern.value_or(FramePattern{});
+  pattern.temporal_layers = layers;
+  if (auto error = error_of_pattern(pattern)) return InputError{*error};
+  return std::nullopt;
+}
+
+std::optional<InputError> check_kinds(const EncoderSettings& s) {
+  if (s.kinds == KindChoice::kBones && s.profile == Profile::kBaseline) {
+    return InputError{
+        "the Baseline profile has no bones: use --profile main or high, or leave "
+        "out --gof-kind"};
+  }
+  if (s.kinds == KindChoice::kFrames && s.profile != Profile::kHigh) {
+    return InputError{"GOFs of frames need --profile high: use that, or leave out --gof-kind"};
+  }
+  if (s.target.kind == Target::kLossless) {
+    if (s.profile != Profile::kHigh) {
+      return InputError{
+          "lossless coding needs --profile high (version 1.2, in preparation): use that, or "
+          "leave out --lossless"};
+    }
+    if (s.kinds != KindChoice::kAuto && s.kinds != KindChoice::kFrames) {
+      return InputError{
+          "only GOFs of frames are lossless: use --gof-kind frames, or leave out --gof-kind or "
+          "--lossless"};
+    }
+  }
+  if (auto error = check_low_delay(s)) return error;
+  const KindChoice kinds = s.usable_kinds();
+  const bool has_bones = kinds == KindChoice::kAuto || kinds == KindChoice::kBones;
+  if (kinds == KindChoice::kFrames && s.components > 0) {
+    return InputError{"--components has no effect on GOFs of frames: leave it out"};
+  }
+  if (!has_bones && s.main != MainTools{}) {
+    return InputError{
+        "the settings of bones and trajectories have no effect on GOFs without "
+        "bones: leave them out, or use --gof-kind auto or bones"};
+  }
+  if (auto error = check_pattern(s)) return error;
+  if (kinds == KindChoice::kAuto &&
+      (s.frames.temporal_layers > 1 || s.frames.layer_groups > 1)) {
+    return InputError{
+        "layers of GOFs of frames need GOFs of this kind alone: use --gof-kind frames"};
+  }
+  if (s.frames.layer_groups < 1) return InputError{"there is at least one layer group"};
+  const bool has_frames = kinds == KindChoice::kAuto || kinds == KindChoice::kFrames;
+  if (s.frames != FrameTools{} && !(has_frames && s.profile == Profile::kHigh)) {
+    return InputError{
+        "--frame-pattern, --frame-weights, --patches and, except for Baseline, --partition "
+        "need "
+        "--profile high and --gof-kind frames: use these, or leave them out"};
+  }
+  return std::nullopt;
+}
+
+// Rejects parameters of layers if there are no layers, as they would have no effect.
+std::optional<InputError> check_layers(const MainTools& tools) {
+  if (tools.prediction.value_or(Prediction::kLayers) == Prediction::kLayers)
+    return std::nullopt;
+  const MainTools defaults;
+  for (const Parameter& p :
+       {Parameter{"--no-geometry-weights", tools.geometry_weights != defaults.geometry_weights},
+        Parameter{"--no-outer-ring", tools.outer_ring != defaults.outer_ring},
+        Parameter{"--no-layer-steps", tools.layer_steps != defaults.layer_steps},
+        Parameter{"--layer-groups", tools.layer_groups > 1}}) {
+    if (p.given) {
+      return InputError{std::string(p.option) +
+                        " needs layers: leave it out, or use --prediction layers"};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<InputError> check_baseline(const EncoderSettings& s) {
+  const BaselineTools& b = s.baseline;
+  if ((b.qu == 0) != (b.qc == 0)) {
+    return InputError{"qu and qc go together: give both, or neither"};
+  }
+  if (b.qu > 0 && s.target.kind != Target::kNone) {
+    return InputError{
+        "a target determines the quantisers: leave out either the target or qu and qc"};
+  }
+  if (b.qu > 0 && s.components == 0) {
+    return InputError{"qu and qc need a number of components per cluster (--components)"};
+  }
+  if ((!b.rdo || b.rate_in_vectors) && s.components == 0) {
+    return InputError{std::string(b.rdo ? "--rdo-rate" : "--no-rdo") +
+                      " needs a number of components per cluster (--components)"};
+  }
+  const bool needs_seeds = b.motion != MotionMeasure::kAuto || b.seed_mode == SeedMode::kFirst;
+  if (needs_seeds && b.partition != PartitionMethod::kSeeds) {
+    return InputError{
+        std::string(b.motion != MotionMeasure::kAuto ? "--motion" : "--seeds first") +
+        " needs clusters of seeds: leave it out, or use --partition seeds"};
+  }
+  if (b.qu < 0 || b.qc < 0 || b.qdelta < 0 || b.qu > 20 || b.qc > 20 || b.qdelta > 24) {
+    return InputError{"quantisers have at most 20 bits (qu, qc) and 24 bits (qdelta)"};
+  }
+  return std::nullopt;
+}
+
+// Rejects counts that exceed the limits of every level (Annex B), whatever the animation.
+std::optional<InputError> check_counts(const EncoderSettings& s) {
+  const Level& most = kLevels.back();
+  const auto refuse = [](std::uint32_t limit, const std::string& what) {
+    return InputError{"no level allows more than " + std::to_string(limit) + " " + what};
+  };
+  if (s.components > most.max_components) {
+    return refuse(most.max_components, "components (--components)");
+  }
+  if (s.main.bones > most.max_clusters) return refuse(most.max_clusters, "bones (--bones)");
+  if (s.baseline.clusters > most.max_clusters) {
+    return refuse(most.max_clusters, "clusters (--clusters)");
+  }
+  return std::nullopt;
+}
+
+bool is_position_bits(double value) {
+  return value >= kMinPositionBits && value <= kMaxPositionBits && value == std::floor(value);
+}
+
+}  // namespace
+
+std::optional<InputError> check_clips(std::span<const Clip> clips, std::uint32_t num_frames) {
+  if (clips.size() > kMaxClips) {
+    return InputError{"a stream has at most " + std::to_string(kMaxClips) + " clips, not " +
+                      std::to_string(clips.size())};
+  }
+  for (const Clip& clip : clips) {
+    if (clip.name.empty() || clip.name.size() > kMaxClipNameBytes ||
+        find_clip_name_error(clip.name) < clip.name.size()) {
+      return InputError{"the name of a clip has 1 to " + std::to_string(kMaxClipNameBytes) +
+                        " bytes of UTF-8 without control characters (--clip)"};
+    }
+    if (clip.num_frames == 0) return InputError{"clip `" + clip.name + "` has no frames"};
+    if (clip.first_frame >= num_frames || clip.num_frames > num_frames - clip.first_frame) {
+      return InputError{"clip `" + clip.name + "` has frames beyond the last, " +
+                        std::to_string(num_frames - 1) + " (--clip)"};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<InputError> check_attributes(const AttributeSettings& settings,
+                                           const SourceAttributes& attributes) {
+  const auto& sets = attributes.sets;
+  if (settings.dropped || sets.size() <= kMaxAttributeSets) return std::nullopt;
+  return InputError{"a stream has at most " + std::to_string(kMaxAttributeSets) +
+                    " attributes, not " + std::to_string(sets.size()) + ": leave out `" +
+                    sets[kMaxAttributeSets].name +
+                    (sets.size() > kMaxAttributeSets + 1 ? "` and those after it" : "`")};
+}
+
+std::optional<InputError> check_settings(const EncoderSettings& s) {
+  const bool main = s.profile != Profile::kBaseline;
+  if (auto error = main ? check_unused(parameters(s.baseline), "baseline")
+                        : check_unused(parameters(s.main), "main")) {
+    return error;
+  }
+  if (s.profile != Profile::kHigh) {
+    if (auto error = check_unused(parameters_of_high(s.main), "high")) return error;
+  }
+  if (auto error = check_kinds(s)) return error;
+  if (auto error = check_baseline(s)) return error;
+  if (auto error = check_layers(s.main)) return error;
+  if (auto error = check_counts(s)) return error;
+  if (s.main.track_levels.value_or(0) > std::uint32_t{kMaxTrackLevels}) {
+    return InputError{"hierarchical tracks have at most " + std::to_string(kMaxTrackLevels) +
+                      " levels besides level 0 (--track-levels)"};
+  }
+  const std::uint32_t most_layers = s.main.track_levels.value_or(kMaxTrackLevels) + 1;
+  if (s.main.temporal_layers < 1 || s.main.temporal_layers > most_layers) {
+    return InputError{"with " + std::to_string(most_layers - 1) +
+                      " track levels, there are 1 to " + std::to_string(most_layers) +
+                      " temporal layers (--temporal-layers)"};
+  }
+  // The most bones of a vertex none of whose bones is a candidate (6.12.2).
+  if (s.main.influences > kMaxExtraBones) {
+    return InputError{"a vertex follows at most " + std::to_string(kMaxExtraBones) +
+                      " bones (--influences)"};
+  }
+  if (s.metadata.size() > kMaxMetadataBytes) {
+    return InputError{"metadata may have at most 1 MiB"};
+  }
+  if (auto error = check_clips(s.clips, kMaxFrames)) return error;
+  if (s.target.has_search() && !(s.target.value > 0.0 && std::isfinite(s.target.value))) {
+    return InputError{"a target must be a number above zero"};
+  }
+  if (s.target.kind == Target::kLossless && s.target.value != 0.0 &&
+      !is_position_bits(s.target.value)) {
+    return InputError{"positions have 2 to " + std::to_string(kMaxPositionBits) +
+                      " bits (--lossless)"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace rlpc

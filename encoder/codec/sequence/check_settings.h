@@ -1,0 +1,23 @@
+// Validates EncoderSettings.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "common/codec/mesh/clip.h"
+#include "encoder/codec/settings.h"
+#include "encoder/meshes/frame_source.h"
+
+namespace rlpc {
+
+// Why the settings cannot be used, naming the option of rlpcenc for the setting at fault; none
+// if they are valid.
+std::optional<InputError> check_settings(const EncoderSettings& settings);
+// Likewise of the clips of a sequence of so many frames; kMaxFrames if that is not known.
+std::optional<InputError> check_clips(std::span<const Clip> clips, std::uint32_t num_frames);
+// Why attributes cannot be coded; none if they can, or are to be dropped.
+std::optional<InputError> check_attributes(const AttributeSettings& settings,
+                                           const SourceAttributes& attributes);
+
+}  // namespace rlpc

@@ -1,0 +1,139 @@
+#include "encoder/codec/sequence/memory_need.h"
+
+#include <algorithm>
+#include <string>
+
+#include "common/files/messages.h"
+#include "encoder/codec/kinds/inter/pattern_search.h"
+#include "encoder/codec/sequence/choices/gof_kinds.h"
+
+namespace rlpc {
+
+namespace {
+
+// Per position of the span being coded. Measured with random motion, which needs all
+// components: 110 (Baseline) to 185 (Main). Real motion needs 40.
+constexpr std::uint64_t kBytesOfPosition = 190;  // fixed: memory
+// Of a skinned model that later spans may use: factors of two or four bytes, of at most three
+// trajectories for each frame.
+constexpr std::uint64_t kFactorsOfModel = 12;  // fixed: memory
+
+// Frames that can be coded at once.
+std::uint64_t frames_in_memory(const EncoderSettings& settings, std::uint32_t num_vertices,
+                               std::uint64_t bytes_of_position) {
+  constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 26;  // fixed: memory
+  constexpr std::uint64_t kPart = 2;  // fixed: they take at most half of the limit
+  const std::uint64_t positions =
+      std::min(kMostPositions, settings.max_memory_bytes / (kPart * bytes_of_position));
+  return std::min<std::uint64_t>(positions / num_vertices, kMaxFrames);
+}
+
+// Per vertex, what the encodings of a GOF of frames that are compared hold: positions, as
+// doubles and floats and decoded, and what each encoding learns.
+std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHeader& header,
+                              std::uint32_t num_frames) {
+  constexpr std::uint64_t kOfFrame = 36;     // fixed: memory; without decoded positions
+  constexpr std::uint64_t kDecoded = 12;     // fixed: memory
+  constexpr std::uint64_t kOfFilter = 2100;  // fixed: memory
+  const KindChoice kinds = settings.usable_kinds();
+  if (settings.profile != Profile::kHigh ||
+      (kinds != KindChoice::kAuto && kinds != KindChoice::kFrames)) {
+    return 0;
+  }
+  std::size_t choices = 1;
+  if (!settings.low_delay) {
+    const auto patterns = patterns_of(settings, header.open_end_flag, num_frames);
+    const auto patches = patches_of(settings, header.open_end_flag, num_frames);
+    choices = std::max(patterns.size(), choices_of_patches(patterns, patches).size());
+  }
+  return kOfFrame * num_frames +
+         choices * (kDecoded * num_frames + kOfFilter * settings.frames.temporal_layers);
+}
+
+struct MemoryNeed {
+  std::uint64_t with_one_thread = 0;
+  std::uint64_t of_thread = 0;  // of each further one
+};
+
+MemoryNeed memory_need(const EncoderSettings& settings, const SequenceHeader& header,
+                       std::uint32_t span_frames, std::uint32_t kept_frames,
+                       const SourceMemory& source) {
+  // Measured with random motion: 70 bytes per position of a kept analysis. Real motion
+  // needs 10.
+  constexpr std::uint64_t kFixed = std::uint64_t{16} << 20;  // fixed: memory
+  constexpr std::uint64_t kOfVertex = 700;                   // fixed: memory
+  constexpr std::uint64_t kOfTriangle = 250;                 // fixed: memory
+  constexpr std::uint64_t kKept = 70;                        // fixed: memory
+  // The rest of a skinned model: rest position, influences, two sets of weights of prediction.
+  constexpr std::uint64_t kOfModel = 400;  // fixed: memory
+  const bool has_models = settings.profile == Profile::kHigh && span_frames < header.num_frames;
+  const std::uint64_t of_model =
+      has_models ? header.num_vertices * (kOfModel + kFactorsOfModel * span_frames) : 0;
+  // Each thread has a span of its own, or a candidate for one, encoded by all kinds of GOFs;
+  // another model is in force.
+  const std::uint64_t of_thread =
+      header.num_vertices *
+          (kBytesOfPosition * span_frames + bytes_of_frames(settings, header, span_frames)) +
+      of_model;
+  const std::uint64_t of_vertex =
+      kOfVertex + kKept * kept_frames + source.bytes_of_position * span_frames;
+  const std::uint64_t shared = kFixed + source.bytes + header.num_vertices * of_vertex +
+                               header.num_triangles * kOfTriangle + of_model;
+  return {shared + of_thread, of_thread};
+}
+
+}  // namespace
+
+std::uint32_t longest_gof(const EncoderSettings& settings, std::uint32_t num_vertices) {
+  if (settings.gof_frames > 0) return settings.gof_frames;
+  if (settings.profile == Profile::kHigh) return kDefaultTrackFrames;
+  return settings.clips.size() < 2 ? kDefaultGofFrames
+                                   : longest_gof_of_all(settings, num_vertices);
+}
+
+std::uint32_t longest_gof_of_all(const EncoderSettings& settings, std::uint32_t num_vertices) {
+  if (settings.gof_frames > 0) return settings.gof_frames;
+  if (settings.profile == Profile::kHigh) return kDefaultTrackFrames;
+  if (settings.profile == Profile::kBaseline) return kDefaultGofFrames;
+  return static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(frames_in_memory(settings, num_vertices, kBytesOfPosition),
+                                kDefaultGofFrames, kClipFrames));
+}
+
+std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header,
+                           const SourceMemory& source) {
+  const std::uint32_t longest = longest_gof(settings, header.num_vertices);
+  if (settings.profile != Profile::kHigh) return longest;
+  const auto frames = [&](std::uint64_t bytes_of_position) {
+    return static_cast<std::uint32_t>(std::max<std::uint64_t>(
+        longest, frames_in_memory(settings, header.num_vertices, bytes_of_position)));
+  };
+  std::uint32_t span = frames(kBytesOfPosition);
+  // With several spans, there are two skinned models besides: one in force and a new one.
+  if (header.num_frames > span) span = frames(kBytesOfPosition + 2 * kFactorsOfModel);
+  // What does not grow with the span may need more than the other half of the limit.
+  const auto fits = [&] {
+    return memory_need(settings, header, std::min(span, header.num_frames), 0, source)
+               .with_one_thread <= settings.max_memory_bytes;
+  };
+  while (span > longest && !fits()) span = std::max(longest, span - (span + 3) / 4);
+  return span;
+}
+
+InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
+                                        const SequenceHeader& header, std::uint32_t span_frames,
+                                        std::uint32_t kept_frames, const SourceMemory& source) {
+  const MemoryNeed need = memory_need(settings, header, span_frames, kept_frames, source);
+  if (need.with_one_thread <= settings.max_memory_bytes) {
+    const std::uint64_t others =
+        (settings.max_memory_bytes - need.with_one_thread) / need.of_thread;
+    const std::uint32_t wanted = std::clamp(settings.threads, 1U, kMaxEncoderThreads);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(wanted, others + 1));
+  }
+  return InputError{"encoding may need " + std::to_string((need.with_one_thread >> 20) + 1) +
+                        " MiB of memory; the limit is " + size_text(settings.max_memory_bytes) +
+                        " (--max-memory). A shorter --gof needs less",
+                    true};
+}
+
+}  // namespace rlpc

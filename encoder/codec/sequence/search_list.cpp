@@ -1,0 +1,61 @@
+#include "encoder/codec/sequence/search_list.h"
+
+#include <algorithm>
+
+#include "encoder/codec/sequence/memory_need.h"
+
+namespace rlpc {
+namespace {
+
+// The searches with the profile of the settings. With preset slow, one GOF may also be worse
+// than several.
+std::vector<EncoderSettings> searches_of_profile(const EncoderSettings& settings,
+                                                 std::uint32_t num_vertices,
+                                                 std::uint32_t num_frames) {
+  std::vector<EncoderSettings> searches{settings};
+  if (settings.preset != Preset::kSlow || !settings.target.has_search()) return searches;
+  if (settings.gof_frames >= num_frames && num_frames > 1) {
+    EncoderSettings& several = searches.emplace_back(settings);
+    several.gof_frames = 0;
+    several.gof_frames =
+        std::min(longest_gof(several, num_vertices), num_frames - num_frames / 2);
+  }
+  std::vector<EncoderSettings> usual = searches;
+  for (EncoderSettings& search : usual) search.preset = Preset::kMedium;
+  searches.insert(searches.end(), usual.begin(), usual.end());
+  return searches;
+}
+
+// Whether all tools are left to the encoder, so that those of another profile may be used.
+bool is_free(const EncoderSettings& settings) {
+  return settings.target.has_search() && settings.kinds == KindChoice::kAuto &&
+         settings.components == 0 && settings.main == MainTools{} &&
+         settings.frames == FrameTools{};
+}
+
+}  // namespace
+
+std::vector<Search> list_searches(const EncoderSettings& settings, std::uint32_t num_vertices,
+                                  std::uint32_t num_frames) {
+  // fixed: of the time, about, in usual searches; others are mostly not begun.
+  constexpr double kSlowPart = 3.0;
+  std::vector<Search> list;
+  EncoderSettings of_profile = settings;
+  const auto add = [&] {
+    const bool is_own = of_profile.profile == settings.profile;
+    for (const EncoderSettings& search :
+         searches_of_profile(of_profile, num_vertices, num_frames)) {
+      const double part = search.preset == Preset::kSlow ? kSlowPart : 1.0;
+      list.push_back({search, !is_own, is_own ? part : 0.0});
+    }
+  };
+  add();
+  while (is_free(settings) && of_profile.profile != Profile::kBaseline) {
+    of_profile.profile =
+        of_profile.profile == Profile::kHigh ? Profile::kMain : Profile::kBaseline;
+    add();
+  }
+  return list;
+}
+
+}  // namespace rlpc

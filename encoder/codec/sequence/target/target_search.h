@@ -1,0 +1,88 @@
+// Searches for the quantiser step that reaches a target error or rate.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "encoder/codec/sequence/target/step_search.h"
+#include "encoder/codec/settings.h"
+
+namespace rlpc {
+
+// The quantiser steps that an analysis is valid for, as ratios to the step of the analysis:
+// strictly between finest and coarsest. A new analysis is made such that the ratio is made_for.
+struct AnalysisRange {
+  double finest;
+  double made_for;
+  double coarsest;
+};
+
+// Usage: until finished(), encode with step() and analysis_step(), then report() the result.
+// All steps are in grid steps.
+class TargetSearch {
+ public:
+  // Estimates the error at a step, up to a factor almost independent of the step; empty: no
+  // estimate.
+  using Expected = std::function<double(double step)>;
+
+  // spread: RMS of the coordinates about the mean of their frame, in grid steps.
+  // steps_per_unit: grid steps per unit. step_of_error: typical ratio of the step to the RMS
+  // error of a coordinate, for the first step.
+  TargetSearch(const Target& target, double spread, double steps_per_unit, double step_of_error,
+               const AnalysisRange& analysis_range);
+
+  // Before the first encoding: sets the first step, unless there is no target.
+  void begin_at(double step) {
+    if (target_.has_search()) step_ = step;
+  }
+  // Before the first encoding, if the target is an error: sets the first step to the one at
+  // which the target is expected. expected: from analyses made for analysis_step().
+  void begin_at(const Expected& expected);
+  // Encodings take long: a KG error of up to 4 % below the target ends the search after three.
+  void set_costly() { is_costly_ = true; }
+  double step() const { return step_; }
+  // The step to analyse for. Near the target it is kept as long as it is valid for step(),
+  // because the measured value jumps from one analysis to the next.
+  double analysis_step() const {
+    return serves(frozen_, step_) ? frozen_ : step_ / range_.made_for;
+  }
+  double last_step() const { return last_step_; }
+  // Reports an encoding with step(): its error or rate, in the unit of the target, and its
+  // bytes. True if it is the best so far. expected: if the target is an error, the estimate
+  // from the analyses of this encoding.
+  bool report(double measured, std::uint64_t bytes, const Expected& expected = {});
+  bool finished() const { return finished_; }
+  // Whether the best encoding does not exceed the target.
+  bool met() const { return !target_.has_search() || best_.met(); }
+
+ private:
+  bool serves(double analysis_step, double step) const {
+    return step > range_.finest * analysis_step && step < range_.coarsest * analysis_step;
+  }
+  bool is_near(double measured) const;
+  double aim() const;
+  void choose_next(double measured, const Expected& expected);
+  void sample_beyond_jump();
+  void narrow_bracket(double aim);
+  double factor_to(double aim, double value, const Expected& expected) const;
+  double step_for(double value, const Expected& expected) const;
+
+  Target target_;
+  AnalysisRange range_;
+  double step_ = 1.0;
+  double frozen_ = 0.0;  // analysis step kept near the target; 0: none yet
+  double last_step_ = 1.0;
+  BestEncoding best_;
+  Bracket bracket_;
+  PowerLaw power_law_;
+  double last_measured_ = -1.0;  // below 0: none yet
+  int num_equal_ = 0;            // encodings before with the same
+  bool is_costly_ = false;
+  int trials_ = 0;
+  bool was_interpolated_ = false;  // the current step, in a narrow bracket
+  double sampled_from_ = 0.0;      // start of the samples beyond a jump; 0: not sampling
+  int samples_ = 0;
+  bool finished_ = false;
+};
+
+}  // namespace rlpc

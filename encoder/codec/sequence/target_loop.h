@@ -1,0 +1,50 @@
+// Searches for the quantiser step at which a batch of GOFs meets its target.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "encoder/codec/report.h"
+#include "encoder/codec/sequence/gof_batch.h"
+#include "encoder/codec/sequence/rival.h"
+#include "encoder/codec/sequence/target/target_search.h"
+#include "encoder/codec/settings.h"
+#include "encoder/meshes/frame_source.h"
+
+namespace rlpc {
+
+// The search for the target of the settings, in grid steps of the header. rms_spread: RMS of
+// the coordinates about the mean of their frame, over all frames of the batch, in units.
+TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
+                        double rms_spread);
+
+struct TargetTask {
+  const EncoderSettings& settings;
+  const SequenceHeader& header;
+  double rms_spread = 0.0;   // RMS of coordinates about the mean of their frame, units
+  double fixed_bits = 0.0;   // bits outside the GOFs that count towards a rate
+  double first_step = 0.0;   // step of the first trial, grid steps; 0: chosen by the search
+  bool keeps_level = false;  // reject a last resort that needs a higher level than the header
+  const Rival* rival = nullptr;  // what must be beaten; null: none
+  // Called with the number of the trial, from 1, and the fraction of it that is done.
+  std::function<void(std::uint32_t trial, double done)> progress = {};
+};
+
+struct TargetResult {
+  BatchTrial trial;       // the best trial
+  double step = 0.0;      // its quantiser step, grid steps
+  double measured = 0.0;  // its error or rate, in the unit of the target
+  bool met = false;       // it does not exceed the target
+  std::uint32_t trials = 0;
+  bool given_up = false;  // the search, as it had no prospect of beating the rival
+};
+
+// Runs the search. If it misses the target, searches again without skinned models of earlier
+// spans; then, for a rate, with what is chosen at the last step; then with the last resort of
+// the batch. Errors: those of the batch.
+InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch);
+
+// The first encoding of that search. Errors: those of the batch.
+InputResult<BatchTrial> first_trial(const TargetTask& task, GofBatch& batch);
+
+}  // namespace rlpc

@@ -1,0 +1,50 @@
+// The Lagrange multiplier for all choices between rate and distortion in the encoder.
+#pragma once
+
+#include <algorithm>
+#include <span>
+
+#include "encoder/codec/math/det_math.h"
+#include "encoder/codec/spans/gof_coder.h"
+#include "encoder/codec/spans/gof_frames.h"
+
+namespace rlpc {
+
+// The multiplier in squared steps per bit. At high rate a uniform quantiser of step s adds the
+// squared error D = s^2 / 12 to a value, and the rate falls by 1 / (2 ln 2 D) bits per unit of
+// D. So the multiplier, -dD/dR, is 2 ln 2 D = 0.1155 s^2.
+inline constexpr double kLambda = 0.1155;  // fixed: ln 2 / 6
+
+// The squared error, in squared grid steps, that one bit is worth at a quantiser step.
+inline double lambda(double step) { return kLambda * step * step; }
+
+inline double bits_of(std::span<const EncodedGof::Unit> units) {
+  double bits = 0.0;
+  for (const auto& unit : units) bits += 8.0 * static_cast<double>(unit.payload.size());
+  return bits;
+}
+inline double bits_of(const EncodedGof& encoded) { return bits_of(encoded.units); }
+
+// tuned: Frames from which the error of a candidate is taken. It hardly differs from frame to
+// frame, unless each is predicted from others, and decoding takes time.
+inline constexpr std::uint32_t kErrorFrames = 24;
+
+// D + lambda R of an encoded GOF: squared error of its decoded frames, from a sample unless it
+// is known, and bits of its units.
+inline double lagrangian_cost(const EncodedGof& encoded, const GofFrames& frames, double step) {
+  const double error = encoded.squared_error
+                           ? *encoded.squared_error
+                           : squared_error(frames, encoded.frame, kErrorFrames);
+  return error + lambda(step) * bits_of(encoded);
+}
+
+// Bits at equal error, about, for comparison at one step: of encodings whose errors differ
+// much. Lagrangian costs take the rate for a line, which favours small errors then.
+inline double bits_at_equal_error(double bits, double squared_error) {
+  // tuned (off: 0): The rate is about this power of the squared error.
+  constexpr double kRateOfError = -0.25;
+  constexpr double kLeastError = 1e-6;  // fixed: above zero
+  return bits * det_exp2(-kRateOfError * det_log2(std::max(squared_error, kLeastError)));
+}
+
+}  // namespace rlpc

@@ -1,0 +1,88 @@
+#include "encoder/codec/spans/split_coder.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/parallel/for_each.h"
+
+namespace rlpc {
+
+GofFrames frames_of_gof(const GofFrames& frames, const GofSpan& gof) {
+  GofFrames part{frames.num_vertices, gof.count, {}, frames.first_frame + gof.first, 1};
+  part.xyz.assign(frames.at(gof.first, 0),
+                  frames.at(gof.first, 0) + std::size_t{3} * frames.num_vertices * gof.count);
+  return part;
+}
+
+namespace {
+
+// The frames of all parts, one after the other.
+DecodeFrame frames_of_all(const std::vector<GofSpan>& gofs, std::vector<DecodeFrame> decoders) {
+  return [gofs, decoders = std::move(decoders)](std::uint32_t f,
+                                                std::span<std::int32_t> positions) {
+    std::size_t g = 0;
+    while (f >= gofs[g].first + gofs[g].count) ++g;
+    decoders[g](f - gofs[g].first, positions);
+  };
+}
+
+}  // namespace
+
+SplitCoder::SplitCoder(const GofFrames& frames, const MakeCoder& make) : frames_(frames) {
+  for (std::uint32_t g = 0; g < frames.num_gofs; ++g) {
+    parts_.push_back(std::make_unique<Part>());
+    parts_.back()->coder = make(parts_.back()->frames);
+  }
+}
+
+bool SplitCoder::needs_frames(double step, double analysis_step) const {
+  return std::any_of(parts_.begin(), parts_.end(), [&](const auto& part) {
+    return part->coder->needs_frames(step, analysis_step);
+  });
+}
+
+EncodedGof SplitCoder::encode(double step, double analysis_step) {
+  const std::vector<GofSpan> gofs = frames_.gofs();
+  std::vector<EncodedGof> encoded_parts(gofs.size());
+  for_each(gofs.size(), [&](std::size_t g) {
+    Part& part = *parts_[g];
+    if (part.coder->needs_frames(step, analysis_step)) {
+      part.frames = frames_of_gof(frames_, gofs[g]);
+    }
+    encoded_parts[g] = part.coder->encode(step, analysis_step);
+    part.frames.xyz = {};
+  });
+  EncodedGof all;
+  all.squared_error = 0.0;
+  std::vector<DecodeFrame> decoders;
+  std::vector<DecodeCut> cuts;
+  for (EncodedGof& encoded : encoded_parts) {
+    for (auto& unit : encoded.units) all.units.push_back(std::move(unit));
+    if (encoded.cut) cuts.push_back(std::move(encoded.cut));
+    decoders.push_back(std::move(encoded.frame));
+    if (!encoded.squared_error) all.squared_error.reset();
+    if (all.squared_error) *all.squared_error += *encoded.squared_error;
+    all.choices.insert(all.choices.end(), encoded.choices.begin(), encoded.choices.end());
+    all.num_factors = std::max(all.num_factors, encoded.num_factors);
+    all.adaptive_values = std::max(all.adaptive_values, encoded.adaptive_values);
+    all.clusters += encoded.clusters;
+    all.max_clusters = std::max(all.max_clusters, encoded.max_clusters);
+    all.components += encoded.components;
+    all.max_components = std::max(all.max_components, encoded.max_components);
+  }
+  if (cuts.size() == gofs.size()) {
+    all.cut = [gofs, cuts = std::move(cuts)](int layers) {
+      std::vector<DecodeFrame> of_parts;
+      for (const DecodeCut& cut : cuts) of_parts.push_back(cut(layers));
+      return frames_of_all(gofs, std::move(of_parts));
+    };
+  }
+  all.frame = frames_of_all(gofs, std::move(decoders));
+  return all;
+}
+
+void SplitCoder::release_analysis() {
+  for (const auto& part : parts_) part->coder->release_analysis();
+}
+
+}  // namespace rlpc

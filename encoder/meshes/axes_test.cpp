@@ -1,0 +1,98 @@
+#include "encoder/meshes/axes.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rlpc {
+namespace {
+
+std::vector<float> turned(const std::string& text, std::vector<float> xyz) {
+  turn(*parse_axes(text), xyz);
+  return xyz;
+}
+
+TEST(Axes, AreSignedAxesOfTheInput) {
+  EXPECT_EQ(turned("x,y,z", {1, 2, 3}), (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(turned("x,z,-y", {1, 2, 3, 4, 5, 6}), (std::vector<float>{1, 3, -2, 4, 6, -5}));
+  EXPECT_EQ(turned("-z,x,-y", {1, 2, 3}), (std::vector<float>{-3, 1, -2}));
+}
+
+TEST(Axes, AreWrittenAsTheyAreRead) {
+  for (const std::string text : {"x,y,z", "x,z,-y", "-x,-y,-z", "-z,x,y"}) {
+    EXPECT_EQ(axes_text(*parse_axes(text)), text);
+  }
+}
+
+TEST(Axes, AreEachUsedOnce) {
+  for (const std::string text : {"", "x", "x,y", "x,y,", "x,y,y", "x,y,w", "x,y,z,", "x,y,z,x",
+                                 "xyz", "x, y, z", "--x,y,z", "X,Y,Z"}) {
+    const auto axes = parse_axes(text);
+    ASSERT_FALSE(axes) << text;
+    EXPECT_NE(axes.error().message.find("such as x,z,-y"), std::string::npos);
+  }
+}
+
+TEST(Axes, AreMirroredByOneExchangeOrSign) {
+  for (const std::string text : {"x,y,z", "x,z,-y", "x,-z,y", "-x,-y,z", "y,z,x"}) {
+    EXPECT_FALSE(is_mirror(*parse_axes(text))) << text;
+  }
+  for (const std::string text : {"x,z,y", "-x,y,z", "-x,-y,-z", "-y,z,x"}) {
+    EXPECT_TRUE(is_mirror(*parse_axes(text))) << text;
+  }
+}
+
+class OneTriangle final : public FrameSource {
+ public:
+  explicit OneTriangle(const std::optional<Axes>& axes_of_mesh) : FrameSource(shape()) {
+    set_axes_of_mesh(axes_of_mesh);
+  }
+  std::optional<InputError> read_frame(std::uint32_t /*frame*/, std::span<float> xyz) override {
+    for (std::size_t i = 0; i < xyz.size(); ++i) xyz[i] = static_cast<float>(i);
+    return std::nullopt;
+  }
+
+ private:
+  static Shape shape() {
+    Shape s;
+    s.num_vertices = 3;
+    s.num_frames = 1;
+    s.triangles = {{0, 1, 2}};
+    return s;
+  }
+};
+
+std::unique_ptr<FrameSource> turned_triangle(const std::string& axes,
+                                             const std::string& of_mesh = "") {
+  const auto mesh = of_mesh.empty() ? std::nullopt : std::optional(*parse_axes(of_mesh));
+  return turn_source(std::make_unique<OneTriangle>(mesh), *parse_axes(axes));
+}
+
+TEST(TurnedSource, TurnsPositions) {
+  std::vector<float> xyz(9);
+  ASSERT_FALSE(turned_triangle("x,z,-y")->read_frame(0, xyz));
+  EXPECT_EQ(xyz, (std::vector<float>{0, 2, -1, 3, 5, -4, 6, 8, -7}));
+}
+
+TEST(TurnedSource, KeepsTheSideThatTrianglesFace) {
+  const Triangle as_it_is{0, 1, 2};
+  const Triangle turned_over{0, 2, 1};
+  EXPECT_EQ(turned_triangle("x,z,-y")->triangles()[0], as_it_is);
+  EXPECT_EQ(turned_triangle("x,z,y")->triangles()[0], turned_over);
+  // The triangles are those of a mesh that is mirrored already.
+  EXPECT_EQ(turned_triangle("x,z,y", "x,z,y")->triangles()[0], as_it_is);
+  EXPECT_EQ(turned_triangle("x,z,-y", "x,z,y")->triangles()[0], turned_over);
+}
+
+TEST(TurnedSource, HasTheAxesOfItsMeshOnceTurnedToThem) {
+  EXPECT_FALSE(turned_triangle("x,z,-y", "x,z,-y")->axes_of_mesh());
+  EXPECT_EQ(turned_triangle("x,-z,y", "x,z,-y")->axes_of_mesh(), *parse_axes("x,z,-y"));
+}
+
+}  // namespace
+}  // namespace rlpc

@@ -1,0 +1,31 @@
+// Reads the container of a glTF 2.0 document: .gltf is JSON, .glb is JSON and a binary chunk.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "encoder/meshes/frame_source.h"
+#include "encoder/meshes/input_file.h"
+
+namespace rlpc {
+
+struct GltfFile {
+  struct Chunk {
+    std::uint64_t offset = 0;
+    std::uint64_t size = 0;
+  };
+
+  InputFile file;
+  std::shared_ptr<const nlohmann::json> json;
+  std::optional<Chunk> binary;  // .glb only; lies within the file
+  // Upper bound of the memory for the document as JSON and as a GltfDocument.
+  std::uint64_t document_bytes = 0;
+};
+
+// .gltf and .glb are distinguished by contents, not by name.
+InputResult<GltfFile> open_gltf_file(const std::string& path, std::uint64_t max_memory_bytes);
+
+}  // namespace rlpc

@@ -1,0 +1,43 @@
+// What a pose means for the meshes of a model: weights of morph targets, maps of joints.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "encoder/meshes/gltf/model.h"
+#include "encoder/meshes/gltf/pose.h"
+
+namespace rlpc {
+
+// Of the targets of the mesh of a node.
+const std::vector<double>& target_weights(const GltfModel& model, std::uint32_t node,
+                                          const GltfPose& pose);
+// [joint of the skin], maps from the mesh to scene coordinates.
+std::vector<Affine> joint_maps(const GltfModel& model, std::uint32_t skin,
+                               const GltfPose& pose);
+
+// Computes positions of instances in a pose. Keeps references to both.
+class PosedModel {
+ public:
+  PosedModel(const GltfModel& model, const GltfPose& pose) : model_(model), pose_(pose) {}
+
+  // out: xyz of the vertices of the instance.
+  void positions(const GltfModel::Instance& instance, std::span<double> out);
+  void positions(const GltfModel::Instance& instance, std::span<float> out);
+
+ private:
+  const GltfModel& model_;
+  const GltfPose& pose_;
+  std::map<std::uint32_t, std::vector<Affine>> joints_;  // by skin
+  std::vector<double> morphed_;
+  std::vector<double> placed_;
+};
+
+// The normals of all vertices, in the order of instances, as viewers make them in a pose: those
+// of skins by the linear part of the weighted joints, others by the inverse transpose of their
+// node's map, both after morph targets; of length 1, or zero, as where a primitive has none.
+std::vector<float> posed_normals(const GltfModel& model, const GltfPose& pose);
+
+}  // namespace rlpc

@@ -1,0 +1,31 @@
+// The .mtl files beside OBJ files.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "encoder/meshes/mesh_reader.h"
+
+namespace rlpc {
+
+// Reads a mesh, and the .mtl files and images that it names if they are in its folder or below
+// it, into its asset. textures: false leaves images out. Notes: files that cannot be read; what
+// is known of materials but not part of the stream.
+InputResult<SingleMesh> read_mesh_and_materials(const std::string& path, bool textures,
+                                                std::uint64_t max_memory_bytes);
+
+// Reads the .mtl files that a mesh names into its materials, and adds notes about those that
+// cannot be read.
+void read_material_text(const std::string& path, std::uint64_t max_memory_bytes,
+                        SingleMesh& mesh);
+
+// Whether a name leads to a place in or below the folder, also where it is a link.
+bool stays_below(const std::filesystem::path& folder, const std::filesystem::path& name);
+
+// Image files that an .mtl file names, each once, in order.
+std::vector<std::string> textures_of(std::string_view mtl);
+
+}  // namespace rlpc

@@ -1,0 +1,40 @@
+// What .mtl files say of materials.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "encoder/meshes/materials/mtl_map.h"
+#include "encoder/meshes/source_attribute.h"
+
+namespace rlpc {
+
+using MtlColour = std::array<double, 3>;
+
+// What is kept of a material. Factors are 0 to 1.
+struct Mtl {
+  std::optional<MtlColour> base;  // Kd, taken as linear
+  std::optional<MtlColour> emission;
+  std::optional<double> opacity;
+  std::optional<double> roughness;
+  std::optional<double> metalness;
+  MtlMap base_image;
+  MtlMap alpha_image;
+  MtlMap emission_image;
+  MtlMap normal_image;
+};
+
+struct MtlFile {
+  std::map<std::string, Mtl, std::less<>> materials;  // those that are used, by name
+  // A line for the user that names the keywords whose values are not kept, and the materials
+  // that no face uses; empty: there are none.
+  std::string dropped;
+};
+
+// Reads the materials that faces use. Cost: linear in the text, but for n * log n of names.
+MtlFile read_mtl(const SourceMaterials& materials);
+
+}  // namespace rlpc

@@ -1,0 +1,18 @@
+// Merges vertices that coincide in every frame, as many files duplicate them along seams of
+// normals and textures.
+#pragma once
+
+#include <memory>
+
+#include "encoder/meshes/frame_source.h"
+
+namespace rlpc {
+
+// Reads all frames. Each group of coinciding vertices becomes one vertex, in the place of its
+// first. Drops degenerate triangles. Errors: those of the source.
+InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> source);
+
+// Drops triangles with fewer than three distinct corners, and adds a note with their number.
+void drop_degenerate(FrameSource::Shape& shape);
+
+}  // namespace rlpc

@@ -1,0 +1,242 @@
+#include "encoder/programs/rlpcenc/method_options.h"
+
+#include <optional>
+
+namespace rlpc {
+namespace {
+
+void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
+  const std::string group = "Texture coordinates, normals, colours, materials";
+  AttributeSettings& a = line.options.settings.attributes;
+  app.add_flag("--no-attributes", a.dropped, "Positions and triangles alone")->group(group);
+  add_off_switch(app, "--no-textures", line.options.input.textures,
+                 "Leave images out of the materials")
+      ->group(group);
+  auto* const uv_bits =
+      app.add_option("--uv-bits", a.uv_bits,
+                     "Texture coordinates in steps of 1/2^N of an image (default: 12); coarser "
+                     "where they repeat a small one");
+  uv_bits->check(CLI::Range(1, 16))->option_text("N")->group(group);
+  add_choice<NormalChoice>(app, "--normals", a.normals,
+                           {{"auto", NormalChoice::kAuto},
+                            {"smoothing", NormalChoice::kSmoothing},
+                            {"exact", NormalChoice::kExact}},
+                           "Normals: smoothing (which faces share them: computed for every "
+                           "frame), exact (those of the first frame, which turn with the "
+                           "surface), auto (for each, what is nearer to INPUT in decoded "
+                           "frames, default)")
+      ->group(group);
+  auto* const normal_bits = app.add_option(
+      "--normal-bits", a.normal_bits,
+      "With exact normals: bits of each of their two coordinates (default: 8, up to 0.6 "
+      "degrees off)");
+  normal_bits->check(CLI::Range(2, 16))->option_text("N")->group(group);
+  app.add_flag("--exact-attributes", a.exact,
+               "Numbers as 32-bit floats (texture coordinates as 1 - v, colours linear, as "
+               "in glTF), normals with 16 bits per coordinate")
+      ->excludes(uv_bits)
+      ->excludes(normal_bits)
+      ->group(group);
+}
+
+void add_profile_options(CLI::App& app, EncodeCommandLine& line) {
+  const std::string method = "All profiles";
+  add_choice<Profile>(
+      app, "--profile", line.options.settings.profile,
+      {{"high", Profile::kHigh}, {"main", Profile::kMain}, {"baseline", Profile::kBaseline}},
+      "Profile of the stream: main (default), baseline, or high (version 1.2, in preparation)")
+      ->group(method);
+  add_choice<KindChoice>(app, "--gof-kind", line.options.settings.kinds,
+                         {{"auto", KindChoice::kAuto},
+                          {"clusters", KindChoice::kClusters},
+                          {"bones", KindChoice::kBones},
+                          {"frames", KindChoice::kFrames}},
+                         "Groups of frames: auto (the cheapest, default), clusters, bones, "
+                         "frames (each from decoded ones, High profile)")
+      ->group(method);
+  app.add_option("--components", line.options.settings.components,
+                 "Maximum per GOF; Baseline: average per cluster, L of the paper (default: by "
+                 "rate and distortion)")
+      ->check(CLI::Range(1, 1024))
+      ->option_text("N")
+      ->group(method);
+  add_choice<PartitionMethod>(
+      app, "--partition", line.partition,
+      {{"seeds", PartitionMethod::kSeeds},
+       {"kway", PartitionMethod::kKway},
+       {"lloyd", PartitionMethod::kLloyd},
+       {"spectral", PartitionMethod::kSpectral},
+       {"motion", PartitionMethod::kMotion}},
+      "What makes clusters of the Baseline profile and patches of the High profile: seeds "
+      "(motion relative to them; default of Baseline), kway (few edges between equal parts), "
+      "lloyd (near vertices), spectral (concave creases), motion (affine; default of High)")
+      ->group(method);
+}
+
+void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
+  const std::string frames = "GOFs of frames, High profile";
+  FrameTools& t = line.options.settings.frames;
+  app.add_option(
+         "--frame-pattern", line.frame_pattern,
+         "What frames are predicted from: previous (the one before), first (of the GOF), "
+         "dyadic (those around, in periods of 2, 4, ... 64: dyadic:16), entries (see below), "
+         "or "
+         "auto (default: the cheapest of previous, first, dyadic:16 and dyadic:64 for each "
+         "GOF)")
+      ->option_text("WORD")
+      ->group(frames);
+  add_choice<FrameWeights>(
+      app, "--frame-weights", t.weights,
+      {{"learned", FrameWeights::kLearned},
+       {"geometry", FrameWeights::kGeometry},
+       {"plain", FrameWeights::kPlain}},
+      "Weights of prediction: learned (from the frames before, default), geometry (from the "
+      "first; larger, faster), plain (equal ones, as in the SSLPC paper)")
+      ->group(frames);
+  app.add_option(
+         "--patches", t.patches,
+         "Parts of the mesh that can each follow one affine motion in a frame, in place "
+         "of their neighbours; 0: none (default: the cheapest of 0, 16 and 48 for each "
+         "GOF)")
+      ->check(CLI::Range(0, 1024))
+      ->option_text("N")
+      ->group(frames);
+  app.add_option("--frames-per-unit", t.frames_per_unit,
+                 "Frames that share a unit of the stream, at most (default: some 4 kB of "
+                 "them; always one with --low-delay or several --layer-groups)")
+      ->check(CLI::Range(1, 65536))
+      ->option_text("N")
+      ->group(frames);
+}
+
+void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
+  const std::string baseline = "Baseline profile only: parameters of the RLPCA paper";
+  BaselineTools& t = line.options.settings.baseline;
+  const auto add_number = [&](const char* name, auto& value, int least, int most,
+                              const char* what) {
+    app.add_option(name, value, what)
+        ->check(CLI::Range(least, most))
+        ->option_text("N")
+        ->group(baseline);
+  };
+  add_number("--clusters", t.clusters, 1, 1024,
+             "Clusters per GOF, N of the paper (default: chosen)");
+  add_number("--qu", t.qu, 2, 20, "Bits of eigenshapes; with --qc, instead of a quality");
+  add_number("--qc", t.qc, 2, 20, "Bits of coefficients");
+  add_number(
+      "--qdelta", t.qdelta, 2, 24,
+      "Bits of seed positions, for the mean bounding box of the frames (default: from the "
+      "quality)");
+  add_off_switch(app, "--no-rdo", t.rdo, "The same number of components in every cluster")
+      ->group(baseline);
+  add_choice<bool>(app, "--rdo-rate", t.rate_in_vectors, {{"bits", false}, {"vectors", true}},
+                   "With --components, the budget that clusters share: bits (default), or "
+                   "vectors as in the paper")
+      ->group(baseline);
+  add_choice<FrameMode>(
+      app, "--frame", t.frame_mode,
+      {{"auto", FrameMode::kAuto}, {"lcf", FrameMode::kLcf}, {"world", FrameMode::kWorld}},
+      "Coordinates of clusters: auto (default), lcf (local coordinate frames), world")
+      ->group(baseline);
+  add_choice<SeedMode>(app, "--seeds", t.seed_mode,
+                       {{"auto", SeedMode::kAuto},
+                        {"first", SeedMode::kFirst},
+                        {"triangle", SeedMode::kTriangle},
+                        {"spread", SeedMode::kSpread}},
+                       "Vertices that carry local coordinate frames: first or triangle (the "
+                       "first or the most stable triangle at a vertex), spread (distant "
+                       "vertices of the cluster), auto (default: spread; with --qu, the "
+                       "cheapest)")
+      ->group(baseline);
+  add_choice<MotionMeasure>(
+      app, "--motion", t.motion,
+      {{"auto", MotionMeasure::kAuto},
+       {"squared", MotionMeasure::kSquared},
+       {"plain", MotionMeasure::kPlain}},
+      "Of motion relative to seeds, the sum of: squared or plain distances "
+      "(default: squared; with --qu, the cheaper)")
+      ->group(baseline);
+}
+
+void add_main_options(CLI::App& app, EncodeCommandLine& line) {
+  const std::string tools = "Main and High profiles only; any of these disables cluster GOFs";
+  MainTools& t = line.options.settings.main;
+  const auto add_number = [&](const char* name, std::uint32_t& value, std::uint32_t most,
+                              const char* what) {
+    app.add_option(name, value, what)
+        ->check(CLI::Range(std::uint32_t{1}, most))
+        ->option_text("N")
+        ->group(tools);
+  };
+  add_number("--bones", t.bones, 1024, "Maximum bones per GOF (default: chosen)");
+  add_number("--influences", t.influences, kMaxExtraBones,
+             "Maximum bones per vertex (default: chosen)");
+  add_choice<std::optional<Prediction>>(
+      app, "--prediction", t.prediction,
+      {{"auto", std::nullopt},
+       {"none", Prediction::kNone},
+       {"parallelogram", Prediction::kParallelogram},
+       {"parallelograms", Prediction::kParallelograms},
+       {"layers", Prediction::kLayers}},
+      "Of spatial factors: auto (default), none, parallelogram, parallelograms (all), layers")
+      ->group(tools);
+  add_choice<bool>(app, "--basis-steps", t.cobra_steps, {{"equal", false}, {"cobra", true}},
+                   "Quantiser steps of temporal factors: equal (distortion, default), cobra")
+      ->group(tools);
+  add_off_switch(app, "--no-geometry-weights", t.geometry_weights,
+                 "Predict with plain weights, which do not depend on the rest shape")
+      ->group(tools);
+  add_off_switch(app, "--no-outer-ring", t.outer_ring, "Predict from the inner ring only")
+      ->group(tools);
+  add_off_switch(app, "--no-layer-steps", t.layer_steps,
+                 "The same quantiser steps in all layers")
+      ->group(tools);
+  add_off_switch(app, "--no-temporal-weights", t.temporal_weights,
+                 "Only the fixed predictors of temporal factors")
+      ->group(tools);
+  add_off_switch(app, "--no-clusters", t.clusters,
+                 "Bones in all GOFs, even where clusters cost less")
+      ->group(tools);
+  app.add_option("--adaptive-factors", t.adaptive_factors,
+                 "Trajectories that adapt prediction weights, High profile (default: all)")
+      ->check(CLI::Range(std::uint32_t{0}, kLevels.back().max_components))
+      ->option_text("N")
+      ->group(tools);
+  add_choice<std::optional<RestTools>>(
+      app, "--rest", t.rest,
+      {{"auto", std::nullopt},
+       {"prediction", RestTools::kPrediction},
+       {"order", RestTools::kOrder},
+       {"counterparts", RestTools::kCounterparts}},
+      "Coding of rest positions and first frames, High profile: auto (default, all of these), "
+      "prediction (as "
+      "other values), order (also in an order of their own), counterparts (also from parts of "
+      "the same shape)")
+      ->group(tools);
+  app.add_option("--track-levels", t.track_levels,
+                 "Levels of hierarchical tracks, High profile; 0: none (default: 1)")
+      ->check(CLI::Range(0, kMaxTrackLevels))
+      ->option_text("N")
+      ->group(tools);
+  app.add_option("--temporal-layers", t.temporal_layers,
+                 "Temporal layers that a stream can be cut to, High profile (default: 1)")
+      ->check(CLI::Range(1, kMaxTrackLevels + 1))
+      ->option_text("N")
+      ->group(tools);
+  add_number("--component-groups", t.component_groups, 255,
+             "Cut points among trajectories, at most one each (default: by size)");
+  add_number("--layer-groups", t.layer_groups, 255,
+             "Cut points among vertex layers, at most one each (default: by size)");
+}
+
+}  // namespace
+
+void add_method_options(CLI::App& app, EncodeCommandLine& line) {
+  add_attribute_options(app, line);
+  add_profile_options(app, line);
+  add_main_options(app, line);
+  add_frame_options(app, line);
+  add_baseline_options(app, line);
+}
+
+}  // namespace rlpc
