@@ -35,7 +35,7 @@ std::optional<InputError> check(const FrameFormat& format, const EncoderSettings
 InputResult<FrameEncoder> FrameEncoder::create(FrameFormat format, EncoderSettings settings,
                                                ByteSink sink) {
   if (auto error = check(format, settings)) return *error;
-  std::unique_ptr<FrameCoder> coder;
+  std::unique_ptr<FrameBackend> coder;
   if (settings.low_delay) {
     coder = std::make_unique<LowDelayEncoder>(std::move(format), std::move(settings),
                                               std::move(sink));
@@ -47,7 +47,7 @@ InputResult<FrameEncoder> FrameEncoder::create(FrameFormat format, EncoderSettin
   return FrameEncoder(std::move(coder));
 }
 
-FrameEncoder::FrameEncoder(std::unique_ptr<FrameCoder> coder) : coder_(std::move(coder)) {}
+FrameEncoder::FrameEncoder(std::unique_ptr<FrameBackend> coder) : coder_(std::move(coder)) {}
 FrameEncoder::FrameEncoder(FrameEncoder&&) noexcept = default;
 FrameEncoder& FrameEncoder::operator=(FrameEncoder&&) noexcept = default;
 FrameEncoder::~FrameEncoder() = default;

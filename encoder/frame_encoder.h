@@ -46,7 +46,7 @@
 
 namespace rlpc {
 
-class FrameCoder;
+class FrameBackend;
 
 class FrameEncoder {
  public:
@@ -75,8 +75,8 @@ class FrameEncoder {
   std::uint32_t num_added() const;
 
  private:
-  explicit FrameEncoder(std::unique_ptr<FrameCoder> coder);
-  std::unique_ptr<FrameCoder> coder_;
+  explicit FrameEncoder(std::unique_ptr<FrameBackend> coder);
+  std::unique_ptr<FrameBackend> coder_;
 };
 
 }  // namespace rlpc

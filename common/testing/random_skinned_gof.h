@@ -11,7 +11,7 @@
 #include "common/codec/kinds/cluster/cluster_gof.h"
 #include "common/codec/kinds/skinned/influences.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/rest/counterparts.h"
 #include "common/codec/syntax/sequence_header.h"
 
@@ -32,7 +32,7 @@ class RandomSkinnedGof {
   RandomSkinnedGof(unsigned seed, const SkinnedGofSizes& sizes) : state_(seed) {
     make_mesh(sizes);
     make_header(sizes);
-    const CodedMesh mesh = coded_mesh();
+    const OrderedMesh mesh = coded_mesh();
     make_layers_of_gof(mesh);
     for (std::uint32_t b = 0; b < gof.bones.size(); ++b) make_bone(b);
     if (sizes.rest_order) make_rest();
@@ -48,7 +48,7 @@ class RandomSkinnedGof {
   std::optional<RestOrder> rest_order;
   SkinnedGof gof;
 
-  CodedMesh coded_mesh() const { return {gof.prediction, topology, layers, &*rest_order}; }
+  OrderedMesh coded_mesh() const { return {gof.prediction, topology, layers, &*rest_order}; }
 
  private:
   static constexpr int kResidualBits = 28;  // maximum width of a magnitude
@@ -122,7 +122,7 @@ class RandomSkinnedGof {
     }
   }
 
-  void make_layers_of_gof(const CodedMesh& mesh) {
+  void make_layers_of_gof(const OrderedMesh& mesh) {
     gof.layer_group_size = {mesh.num_layers()};
     gof.layer_step.assign(mesh.num_layers(), kMaxLayerStep);
     if (gof.prediction != Prediction::kLayers) return;
@@ -237,7 +237,7 @@ class RandomSkinnedGof {
   }
 
   // The slices present, none to all: each group has at most as many layers as the previous one.
-  void make_slices(const CodedMesh& mesh, const SkinnedGofSizes& sizes) {
+  void make_slices(const OrderedMesh& mesh, const SkinnedGofSizes& sizes) {
     gof.num_component_groups = below(sizes.max_groups + 1);
     gof.slice_layers.clear();
     auto present = static_cast<std::uint32_t>(gof.layer_group_size.size());
@@ -255,7 +255,7 @@ class RandomSkinnedGof {
     if (gof.rest.counterparts_flag) make_counterparts();
   }
 
-  void add_residuals(const CodedMesh& mesh, std::uint32_t group, std::uint32_t present) {
+  void add_residuals(const OrderedMesh& mesh, std::uint32_t group, std::uint32_t present) {
     const std::size_t size = gof.group_end[group] - (group > 0 ? gof.group_end[group - 1] : 0);
     std::vector<std::int32_t> residuals(size * mesh.num_vertices());
     const int bits = between(0, kResidualBits);
@@ -274,7 +274,7 @@ class RandomSkinnedGof {
   }
 
   // As parsed; predicted for absent layers.
-  void make_influences(const CodedMesh& mesh) {
+  void make_influences(const OrderedMesh& mesh) {
     gof.influences.assign(mesh.num_vertices(), {});
     const auto num_bones = static_cast<std::uint32_t>(gof.bones.size());
     InfluencePrediction prediction(gof.influences, num_bones, gof.weight_bits);

@@ -12,7 +12,7 @@
 
 #include "common/codec/bits/bit_writer.h"
 #include "common/codec/kinds/skinned/slice_models.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/testing/section_recipe.h"
 
 namespace rlpc {
@@ -202,7 +202,7 @@ class SliceRecipe : public SectionRecipe {
       section.bypass(weight_bits, bones[i].second);
     }
   }
-  void vertex_residuals(const CodedMesh& mesh, std::span<const std::uint32_t> vertices,
+  void vertex_residuals(const OrderedMesh& mesh, std::span<const std::uint32_t> vertices,
                         std::size_t num_factors) {
     VertexContexts contexts(mesh, num_factors);
     VertexModels vertex_models;

@@ -66,7 +66,7 @@ class SplitSkinnedGof {
     const SkinnedGof& gof = whole.gof;
     const std::size_t with_slices = gof.group_end.size();  // groups, with that of influences
     tracks = gof;
-    tracks.kind = GofKind::kTracks;
+    tracks.kind = GofKind::kSharedRig;
     tracks.model = model;
     tracks.model_idx = model_idx;
     tracks.num_component_groups = model->num_component_groups;

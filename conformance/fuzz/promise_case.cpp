@@ -213,22 +213,22 @@ void CaseMaker::make_high() {
   const bool exact = s.target.kind == Target::kLossless;
   if (case_.way == PromiseCase::kLowDelay) {
     s.low_delay = true;
-    if (chance(2)) s.frames.pattern.emplace().kind = FramePattern::kFirst;
+    if (chance(2)) s.inter.pattern.emplace().kind = FramePattern::kFirst;
   } else if (!exact && chance(2)) {
-    constexpr KindChoice kChoices[] = {KindChoice::kClusters, KindChoice::kBones,
-                                       KindChoice::kFrames};
+    constexpr KindChoice kChoices[] = {KindChoice::kCluster, KindChoice::kSkinned,
+                                       KindChoice::kInter};
     s.kinds = kChoices[below(3)];
   }
-  if (s.usable_kinds() == KindChoice::kFrames) {
-    if (chance(2)) s.frames.patches = below(9);
-    if (chance(3)) s.frames.weights = static_cast<FrameWeights>(below(3));
-    if (chance(3)) s.frames.rest = static_cast<RestTools>(below(3));
-    if (chance(4)) s.frames.frames_per_unit = 1 + below(4);
-    if (chance(4) && !s.low_delay) s.frames.temporal_layers = 2;
-    if (chance(4)) s.frames.layer_groups = 1 + below(3);
+  if (s.usable_kinds() == KindChoice::kInter) {
+    if (chance(2)) s.inter.patches = below(9);
+    if (chance(3)) s.inter.weights = static_cast<InterWeights>(below(3));
+    if (chance(3)) s.inter.rest = static_cast<RestTools>(below(3));
+    if (chance(4)) s.inter.frames_per_unit = 1 + below(4);
+    if (chance(4) && !s.low_delay) s.inter.temporal_layers = 2;
+    if (chance(4)) s.inter.layer_groups = 1 + below(3);
     constexpr PartitionMethod kPartitions[] = {PartitionMethod::kMotion, PartitionMethod::kKway,
                                                PartitionMethod::kLloyd};
-    s.frames.partition = kPartitions[below(3)];
+    s.inter.partition = kPartitions[below(3)];
   }
 }
 

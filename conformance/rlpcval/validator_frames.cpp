@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/kinds/inter/inter_gof.h"
 #include "conformance/rlpcval/validator_checks.h"
 
 namespace rlpc {
@@ -76,7 +76,7 @@ bool check_frame_pattern(ElementReader& r, FramePattern& pattern) {
 
 }  // namespace
 
-// 6.14 frames_of_gof( )
+// 6.14 frames_in_gof( )
 bool check_frames(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
                   GofHeaderCheck& gof) {
   const Level& level = header.level();
@@ -87,7 +87,7 @@ bool check_frames(ElementReader& r, const SequenceHeader& header, std::uint32_t 
   for (std::uint32_t d = 0; !is_exact && d < pattern.num_depths() && r.readable(); ++d) {
     const std::int64_t step = r.ue("frame_step_minus1");
     good &=
-        r.require(step < std::int64_t{kMaxFrameStep}, "R-FRM-01", at_most(kMaxFrameStep - 1));
+        r.require(step < std::int64_t{kMaxInterStep}, "R-FRM-01", at_most(kMaxInterStep - 1));
   }
   (void)r.u(4, "damping_log2");
   (void)r.u(4, "outer_weight");

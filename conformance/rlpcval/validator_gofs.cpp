@@ -36,7 +36,7 @@ class GofWarnings {
   void add(const ClusterGof& gof);
   void add(const SkinnedGof& gof);
   void add(const SkinnedModel& model);
-  void add(const FrameGof& gof);
+  void add(const InterGof& gof);
 
  private:
   std::uint64_t num_vertices() const { return context_.header.num_vertices; }
@@ -49,7 +49,7 @@ class GofWarnings {
   Level& needed_;
 };
 
-void GofWarnings::add(const FrameGof& gof) {
+void GofWarnings::add(const InterGof& gof) {
   raise(needed_.max_gof_values, num_vertices() * gof.num_frames);
   raise(needed_.max_clusters, gof.num_patches);
   raise(needed_.max_gof_factors, 3 * num_vertices() * gof.max_earlier_distance);
@@ -95,7 +95,7 @@ void GofWarnings::add(const ClusterGof& gof) {
 // What has vertices in a GOF of bones or skinned model.
 void GofWarnings::add_rig(const SkinnedModel& rig) {
   std::vector<bool> in_use(rig.bones.size(), false);
-  const CodedMesh& mesh = (*context_.meshes)[rig.prediction];
+  const OrderedMesh& mesh = (*context_.meshes)[rig.prediction];
   for (const Influences& influences : complete_influences(mesh, rig)) {
     for (const Influence& influence : influences) in_use[influence.bone] = true;
   }

@@ -259,16 +259,16 @@ GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
   gof.kind = check_kind(r, header);
   if (!gof.kind) return gof;
   switch (*gof.kind) {
-    case GofKind::kClusters:
+    case GofKind::kCluster:
       gof.section_readable = check_clusters(r, header);
       break;
     case GofKind::kSkinned:
       gof.section_readable = check_bones(r, header, num_layers, gof);
       break;
-    case GofKind::kTracks:
+    case GofKind::kSharedRig:
       gof.section_readable = check_tracks(r, models, gof);
       break;
-    case GofKind::kFrames:
+    case GofKind::kInter:
       gof.section_readable = check_frames(r, header, num_layers, gof);
   }
   gof.section_readable &= good;

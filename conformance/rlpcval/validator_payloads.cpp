@@ -185,10 +185,10 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
   gof_body(unit, payload, header);
 }
 
-// 6.5 clusters_of_gof( ), 6.11 bones_of_gof( ), 6.13.1 tracks_of_gof( ), 6.14 frames_of_gof( )
+// 6.5 clusters_of_gof( ), 6.11 bones_of_gof( ), 6.13.1 tracks_of_gof( ), 6.14 frames_in_gof( )
 void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
                                const GofHeaderCheck& header) {
-  const bool on_grid = header.kind == GofKind::kClusters || lead_.header->positions;
+  const bool on_grid = header.kind == GofKind::kCluster || lead_.header->positions;
   if (!header.section_readable || !lead_.has_connectivity || !on_grid) {
     report_.complete = false;
     return;
@@ -292,8 +292,8 @@ void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
   }
   findings_.suspect(findings_.suspect() || gof_.suspect);
   BitReader r = bits_of(unit, payload);
-  if (is_live(lead_.header->header, GofKind::kFrames) && gof_.access_unit &&
-      gof_.access_unit->header().kind == GofKind::kFrames) {
+  if (is_live(lead_.header->header, GofKind::kInter) && gof_.access_unit &&
+      gof_.access_unit->header().kind == GofKind::kInter) {
     findings_.unchecked(
         "R-HSH-03", "unit_type", unit.offset * 8,
         "GOFs of frames of an open-ended stream have hashes in their frame units");

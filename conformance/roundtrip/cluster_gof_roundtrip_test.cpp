@@ -155,7 +155,7 @@ void expect_round_trip(const Generator& from, const ClusterGof& gof) {
   const std::vector<std::uint8_t> payload = write_cluster_gof(gof, from.header, from.topology);
   BitReader r(payload);
   const GofHeader header = parse_gof_header(r, from.header, gof.first_frame);
-  EXPECT_EQ(header.kind, GofKind::kClusters);
+  EXPECT_EQ(header.kind, GofKind::kCluster);
   const auto parsed = parse_clusters(r, from.header, from.topology, header, {kAmple, 0});
   ASSERT_TRUE(parsed) << parsed.error().rule << " " << parsed.error().element;
   expect_equal(gof, *parsed);

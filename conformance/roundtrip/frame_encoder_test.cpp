@@ -194,8 +194,7 @@ Encoded encode_open_ended(FrameSource& source, const EncoderSettings& settings) 
 // GOFs of any kind; the last is shorter.
 TEST(FrameEncoder, WithoutANumberOfFrames) {
   MemoryFrames source = bending_tube(80, 50);
-  for (const KindChoice kinds :
-       {KindChoice::kAuto, KindChoice::kClusters, KindChoice::kFrames}) {
+  for (const KindChoice kinds : {KindChoice::kAuto, KindChoice::kCluster, KindChoice::kInter}) {
     EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 20);
     settings.kinds = kinds;
     const auto encoded = encode_open_ended(source, settings);

@@ -93,7 +93,7 @@ TEST(GofSummaries, ReportsClusterGofs) {
     EXPECT_EQ(gofs[g].num_frames, 3U);
     EXPECT_EQ(gofs[g].figure("num_clusters"), 2U);
     EXPECT_EQ(gofs[g].figure("num_components"), 4U);
-    EXPECT_EQ(gofs[g].kind, GofKind::kClusters);
+    EXPECT_EQ(gofs[g].kind, GofKind::kCluster);
     EXPECT_TRUE(gofs[g].slices.empty());
   }
 }
@@ -104,7 +104,7 @@ TEST(GofSummaries, ReportsBothKindsInOneStream) {
   for (std::size_t g = 0; g < gofs.size(); ++g) {
     const bool has_bones = g % 2 == 1;
     EXPECT_EQ(gofs[g].first_frame, 2 * g);
-    EXPECT_EQ(gofs[g].kind, has_bones ? GofKind::kSkinned : GofKind::kClusters);
+    EXPECT_EQ(gofs[g].kind, has_bones ? GofKind::kSkinned : GofKind::kCluster);
     EXPECT_EQ(gofs[g].figure("num_bones"), has_bones ? 3U : 0U);
     EXPECT_EQ(gofs[g].figure("num_clusters"), has_bones ? 0U : 2U);
     EXPECT_EQ(gofs[g].figure("num_components"), has_bones ? 0U : 2U);
@@ -130,7 +130,7 @@ TEST(GofSummaries, ReportsModelsAndTheirGofs) {
   for (const GofSummary& gof : stream.gofs) {
     used.push_back(gof.model ? static_cast<int>(gof.model->number) : -1);
     trajectories.push_back(gof.figure("num_trajectories"));
-    EXPECT_EQ(gof.model != nullptr, gof.kind == GofKind::kTracks);
+    EXPECT_EQ(gof.model != nullptr, gof.kind == GofKind::kSharedRig);
   }
   EXPECT_EQ(used, (std::vector<int>{0, 1, 0, -1, 0, -1, 2, 2}));
   EXPECT_EQ(trajectories, (std::vector<std::uint32_t>{6, 1, 3, 0, 1, 3, 0, 4}));

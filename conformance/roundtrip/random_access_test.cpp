@@ -51,30 +51,30 @@ StreamBytes main_stream() {
   return encode_to_memory(source, settings);
 }
 
-StreamBytes stream_of_frames(const std::optional<FramePattern>& pattern, FrameWeights weights) {
+StreamBytes stream_of_frames(const std::optional<FramePattern>& pattern, InterWeights weights) {
   MemoryFrames source = tube_with_normals(6, 26);
   EncoderSettings settings;
   settings.profile = Profile::kHigh;
-  settings.kinds = KindChoice::kFrames;
+  settings.kinds = KindChoice::kInter;
   settings.target = {Target::kKg, 0.5};
   settings.gof_frames = 8;
   settings.attributes.normals = NormalChoice::kExact;
-  settings.frames.pattern = pattern;
-  settings.frames.weights = weights;
+  settings.inter.pattern = pattern;
+  settings.inter.weights = weights;
   settings.hash_mode = HashMode::kFrame;
   return encode_to_memory(source, settings);
 }
 StreamBytes chained_stream() {
-  return stream_of_frames(FramePattern{}, FrameWeights::kLearned);
+  return stream_of_frames(FramePattern{}, InterWeights::kLearned);
 }
 StreamBytes dyadic_stream() {
   return stream_of_frames(FramePattern{FramePattern::kDyadic, 2, {}, 1},
-                          FrameWeights::kLearned);
+                          InterWeights::kLearned);
 }
 // Each frame but the first can be decoded alone.
 StreamBytes independent_stream() {
   return stream_of_frames(FramePattern{FramePattern::kFirst, 1, {}, 1},
-                          FrameWeights::kGeometry);
+                          InterWeights::kGeometry);
 }
 
 class RandomAccess : public testing::TestWithParam<StreamBytes (*)()> {

@@ -25,7 +25,7 @@ constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
 using Payload = std::vector<std::uint8_t>;
 
 SkinnedGofPayloads payloads_of(const RandomSkinnedGof& from) {
-  const CodedMesh mesh = from.coded_mesh();
+  const OrderedMesh mesh = from.coded_mesh();
   return write_skinned_gof(from.gof, mesh, from.header);
 }
 
@@ -56,7 +56,7 @@ class Reading {
     }
     return std::nullopt;
   }
-  const CodedMesh& mesh_of(const SkinnedGof& gof) const { return meshes_[gof.prediction]; }
+  const OrderedMesh& mesh_of(const SkinnedGof& gof) const { return meshes_[gof.prediction]; }
   SkinnedGof finish() { return parser_.finish(); }
 
  private:
@@ -66,7 +66,7 @@ class Reading {
   }
 
   const RandomSkinnedGof& from_;
-  CodedMeshes meshes_;
+  OrderedMeshes meshes_;
   SkinnedGofParser parser_;
 };
 
@@ -103,7 +103,7 @@ void expect_round_trip(const RandomSkinnedGof& from) {
 // Runs the reconstruction of what was parsed; positions are within their range.
 void expect_frames_in_range(Reading& reading, int position_bits) {
   const SkinnedGof gof = reading.finish();
-  const CodedMesh& mesh = reading.mesh_of(gof);
+  const OrderedMesh& mesh = reading.mesh_of(gof);
   const SkinnedRecon recon(mesh, gof, position_bits);
   std::vector<std::int32_t> positions(3 * std::size_t{mesh.num_vertices()});
   for (std::uint32_t f = 0; f < recon.num_frames(); ++f) {
@@ -162,7 +162,7 @@ TEST(SkinnedGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
         jump_track(bone.origin_residual);
       }
       for (Trajectory& t : from.gof.trajectories) jump_track(t.residual);
-      const CodedMesh mesh = from.coded_mesh();
+      const OrderedMesh mesh = from.coded_mesh();
       for (std::size_t group = 0; group < from.gof.vertex_residual.size(); ++group) {
         std::uint32_t end = 0;
         for (std::uint32_t j = 0; j < from.gof.slice_layers[group]; ++j) {
@@ -268,7 +268,7 @@ TEST(SkinnedGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
     if (!is_legal) continue;
     const SkinnedGof cut = reading.finish();
     EXPECT_EQ(cut.slice_layers, kept);
-    const CodedMesh mesh = from.coded_mesh();
+    const OrderedMesh mesh = from.coded_mesh();
     for (std::size_t group = 0; group < cut.vertex_residual.size(); ++group) {
       const std::size_t size = cut.vertex_residual[group].size() / mesh.num_vertices();
       ASSERT_EQ(from.gof.vertex_residual[group].size(), cut.vertex_residual[group].size());

@@ -41,7 +41,7 @@ class Reading {
     const GofHeader header =
         parse_gof_header(r, from_.whole.header, from_.whole.gof.first_frame);
     if (r.error()) return *r.error();
-    if (header.kind != GofKind::kTracks) return Error{Errc::kInvalid, "", "gof_kind", 0};
+    if (header.kind != GofKind::kSharedRig) return Error{Errc::kInvalid, "", "gof_kind", 0};
     return error_of(parser_.tracks(r, header, models_));
   }
   std::optional<Error> slice(const Payload& payload) {
@@ -56,7 +56,7 @@ class Reading {
     }
     return error;
   }
-  const CodedMeshes& meshes() const { return meshes_; }
+  const OrderedMeshes& meshes() const { return meshes_; }
   SkinnedGofParser& parser() { return parser_; }
 
  private:
@@ -67,7 +67,7 @@ class Reading {
 
   const SplitSkinnedGof& from_;
   ModelSlots models_;
-  CodedMeshes meshes_;
+  OrderedMeshes meshes_;
   SkinnedGofParser parser_;
 };
 
@@ -208,7 +208,7 @@ TEST(SkinnedModelRecon, GivesTheFramesOfOneGof) {
   for (unsigned seed = 1; seed <= 1500; ++seed) {
     SCOPED_TRACE(seed);
     const SplitSkinnedGof from(seed, {});
-    const CodedMesh mesh = from.whole.coded_mesh();
+    const OrderedMesh mesh = from.whole.coded_mesh();
     const int bits = from.whole.header.position_bits;
     const auto model = std::make_shared<ModelRecon>(mesh, *from.model, bits, true);
     const SkinnedRecon whole(mesh, from.whole.gof, bits);
@@ -226,7 +226,7 @@ TEST(SkinnedModelRecon, ServesSeveralGofs) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
     const SplitSkinnedGof from(seed, {});
-    const CodedMesh mesh = from.whole.coded_mesh();
+    const OrderedMesh mesh = from.whole.coded_mesh();
     const auto model =
         std::make_shared<ModelRecon>(mesh, *from.model, from.whole.header.position_bits, true);
     SkinnedGof other = from.tracks;

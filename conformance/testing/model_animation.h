@@ -68,9 +68,9 @@ class ModelAnimation : protected SlicedAnimation {
   std::uint32_t first_frame() const {
     return static_cast<std::uint32_t>(index_.gofs.size()) * kGofFrames;
   }
-  const CodedMesh& mesh(Prediction prediction) {
+  const OrderedMesh& mesh(Prediction prediction) {
     auto& mesh = meshes_.at(static_cast<std::size_t>(prediction));
-    if (!mesh) mesh = std::make_unique<CodedMesh>(prediction, topology_, layers_);
+    if (!mesh) mesh = std::make_unique<OrderedMesh>(prediction, topology_, layers_);
     return *mesh;
   }
   static void strip(Bone& bone) {
@@ -102,7 +102,7 @@ class ModelAnimation : protected SlicedAnimation {
     const auto& model = kept_.at(model_idx).model;
     SkinnedGof gof;
     static_cast<SkinnedModel&>(gof) = *model;
-    gof.kind = GofKind::kTracks;
+    gof.kind = GofKind::kSharedRig;
     gof.first_frame = first_frame();
     gof.num_frames = kGofFrames;
     gof.model = model;
@@ -137,7 +137,7 @@ class ModelAnimation : protected SlicedAnimation {
 
   void add_model(std::uint32_t model_idx, const SkinnedModel& model) {
     index_.models.push_back({model_idx, out_.size()});
-    const CodedMesh& coded = mesh(model.prediction);
+    const OrderedMesh& coded = mesh(model.prediction);
     const SkinnedGofPayloads payloads = write_skinned_model(model, model_idx, coded, header_);
     append(out_, UnitType::kModel, payloads.first);
     for (const Bytes& slice : payloads.slices) append(out_, UnitType::kSlice, slice);
@@ -183,7 +183,7 @@ class ModelAnimation : protected SlicedAnimation {
   StreamBytes out_;
   GofIndexEntries index_;
   std::uint64_t gof_offset_ = 0;
-  std::array<std::unique_ptr<CodedMesh>, 4> meshes_;
+  std::array<std::unique_ptr<OrderedMesh>, 4> meshes_;
   std::array<Kept, kMaxModels> kept_;
 };
 

@@ -15,7 +15,7 @@
 #include "conformance/testing/small_animation.h"
 #include "encoder/codec/write/write_cluster_gof.h"
 #include "encoder/codec/write/write_connectivity.h"
-#include "encoder/codec/write/write_frame_gof.h"
+#include "encoder/codec/write/write_inter_gof.h"
 #include "encoder/codec/write/write_skinned_gof.h"
 #include "encoder/codec/write/write_stream.h"
 
@@ -197,15 +197,15 @@ class SlicedAnimation {
 
   // GOF unit, slices, and the hash of each frame.
   void append_gof(StreamBytes& bytes, const SkinnedGof& gof) const {
-    const CodedMesh mesh(gof.prediction, topology_, layers_);
+    const OrderedMesh mesh(gof.prediction, topology_, layers_);
     const SkinnedGofPayloads payloads = write_skinned_gof(gof, mesh, header_);
     append(bytes, UnitType::kGof, payloads.first);
     for (const Bytes& slice : payloads.slices) append(bytes, UnitType::kSlice, slice);
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(mesh, gof), true));
   }
-  void append_gof(StreamBytes& bytes, const FrameGof& gof) const {
-    const CodedMesh mesh(Prediction::kLayers, topology_, layers_);
-    const FrameGofPayloads payloads = write_frame_gof(gof, mesh);
+  void append_gof(StreamBytes& bytes, const InterGof& gof) const {
+    const OrderedMesh mesh(Prediction::kLayers, topology_, layers_);
+    const InterGofPayloads payloads = write_inter_gof(gof, mesh);
     append(bytes, UnitType::kGof, payloads.first);
     for (const Bytes& frame : payloads.frames) append(bytes, UnitType::kFrame, frame);
   }
@@ -215,7 +215,7 @@ class SlicedAnimation {
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(recon), true));
   }
   // Hashes of the GOF as decoded: without trajectories of groups whose slices are absent.
-  std::vector<std::uint32_t> hashes(const CodedMesh& mesh, SkinnedGof gof) const {
+  std::vector<std::uint32_t> hashes(const OrderedMesh& mesh, SkinnedGof gof) const {
     while (gof.slice_layers[gof.group_end.size() - 1] == 0) {
       gof.group_end.pop_back();
       gof.vertex_residual.pop_back();

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "common/codec/kinds/cluster/cluster_gof.h"
-#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/kinds/inter/inter_gof.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
-#include "common/codec/mesh/coded_mesh.h"
 #include "common/codec/mesh/mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/syntax/sequence_header.h"
 #include "common/codec/syntax/write_units.h"
 
@@ -84,10 +84,10 @@ struct Plan {
 void write_stream(const Plan& plan, const std::function<void(const Bytes&)>& write);
 
 ClusterGof make_clusters(const Size& size, Noise& noise);
-SkinnedGof make_bones(const Size& size, const CodedMesh& mesh, Noise& noise);
-SkinnedModel make_model(const Size& size, const CodedMesh& mesh, Noise& noise);
+SkinnedGof make_bones(const Size& size, const OrderedMesh& mesh, Noise& noise);
+SkinnedModel make_model(const Size& size, const OrderedMesh& mesh, Noise& noise);
 // Its member `model` is still null.
 SkinnedGof make_tracks(const Size& size, const SkinnedModel& model, Noise& noise);
-FrameSettings make_frames(const Size& size, const CodedMesh& mesh);
+InterSettings make_frames(const Size& size, const OrderedMesh& mesh);
 
 }  // namespace rlpc::worst_case

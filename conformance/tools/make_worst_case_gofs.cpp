@@ -67,7 +67,7 @@ class InfluenceMaker {
 };
 
 // num_frames: 0 of a skinned model.
-void fill_model(SkinnedModel& model, const Size& size, const CodedMesh& mesh, Noise& noise,
+void fill_model(SkinnedModel& model, const Size& size, const OrderedMesh& mesh, Noise& noise,
                 std::uint32_t num_frames) {
   model.fraction_bits = kMaxFractionBits;
   model.weight_bits = kMaxWeightBits;
@@ -138,14 +138,14 @@ ClusterGof make_clusters(const Size& size, Noise& noise) {
   return gof;
 }
 
-SkinnedGof make_bones(const Size& size, const CodedMesh& mesh, Noise& noise) {
+SkinnedGof make_bones(const Size& size, const OrderedMesh& mesh, Noise& noise) {
   SkinnedGof gof;
   gof.num_frames = size.frames;
   fill_model(gof, size, mesh, noise, size.frames);
   return gof;
 }
 
-SkinnedModel make_model(const Size& size, const CodedMesh& mesh, Noise& noise) {
+SkinnedModel make_model(const Size& size, const OrderedMesh& mesh, Noise& noise) {
   SkinnedModel model;
   fill_model(model, size, mesh, noise, 0);
   model.rest = {false, true, 8, 8, true, true};
@@ -155,7 +155,7 @@ SkinnedModel make_model(const Size& size, const CodedMesh& mesh, Noise& noise) {
 
 SkinnedGof make_tracks(const Size& size, const SkinnedModel& model, Noise& noise) {
   SkinnedGof gof;
-  gof.kind = GofKind::kTracks;
+  gof.kind = GofKind::kSharedRig;
   gof.num_frames = size.frames;
   gof.track_levels = kMaxTrackLevels;
   gof.num_component_groups = model.num_component_groups;
@@ -178,8 +178,8 @@ SkinnedGof make_tracks(const Size& size, const SkinnedModel& model, Noise& noise
 
 // An explicit pattern of the longest period, whose frames all have two references but the last.
 // All but a few have depth 0, so that filters of all temporal layers learn from them.
-FrameSettings make_frames(const Size& size, const CodedMesh& mesh) {
-  FrameSettings s;
+InterSettings make_frames(const Size& size, const OrderedMesh& mesh) {
+  InterSettings s;
   s.pattern.kind = FramePattern::kExplicit;
   s.pattern.entries.push_back({kMaxExplicitPeriod, {0, 0}, 0});
   for (std::uint32_t offset = 1; offset < kMaxExplicitPeriod; ++offset) {

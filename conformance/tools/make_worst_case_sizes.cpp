@@ -67,7 +67,7 @@ Size hardest_frames(const Level& level, const Most& most) {
   Size best;
   std::uint64_t highest = 0;
   const std::uint32_t longest = std::min(most.frames, level.max_gof_frames);
-  for (std::uint32_t t = 1; t <= std::min(most.components, kMaxFrameDepths); ++t) {
+  for (std::uint32_t t = 1; t <= std::min(most.components, kMaxPatternDepths); ++t) {
     for (std::uint32_t frames = 1; frames <= longest; ++frames) {
       const Size size = largest_frames(level, frames, t);
       if (size.values() * t <= highest) continue;

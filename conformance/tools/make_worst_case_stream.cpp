@@ -3,11 +3,11 @@
 #include <memory>
 #include <span>
 
-#include "common/codec/mesh/coded_meshes.h"
+#include "common/codec/mesh/ordered_meshes.h"
 #include "conformance/tools/make_worst_case.h"
 #include "encoder/codec/write/write_cluster_gof.h"
 #include "encoder/codec/write/write_connectivity.h"
-#include "encoder/codec/write/write_frame_gof.h"
+#include "encoder/codec/write/write_inter_gof.h"
 #include "encoder/codec/write/write_skinned_gof.h"
 #include "encoder/codec/write/write_stream.h"
 
@@ -55,8 +55,8 @@ class StreamMaker {
       }
       return;
     }
-    const CodedMeshes meshes(topology, triangles, header_.profile_idc >= kProfileHigh);
-    const CodedMesh& mesh = meshes[Prediction::kLayers];
+    const OrderedMeshes meshes(topology, triangles, header_.profile_idc >= kProfileHigh);
+    const OrderedMesh& mesh = meshes[Prediction::kLayers];
     for (std::uint32_t i = 0; i < plan_.num_rounds; ++i) {
       if (plan_.kind == Kind::kBones) {
         SkinnedGof gof = make_bones(plan_.size, mesh, noise_);
@@ -70,7 +70,7 @@ class StreamMaker {
     }
   }
 
-  void models_and_tracks(const CodedMesh& mesh) {
+  void models_and_tracks(const OrderedMesh& mesh) {
     std::vector<std::shared_ptr<const SkinnedModel>> models;
     for (std::uint32_t m = 0; m < plan_.num_models; ++m) {
       models.push_back(std::make_shared<SkinnedModel>(make_model(plan_.size, mesh, noise_)));
@@ -85,10 +85,10 @@ class StreamMaker {
     }
   }
 
-  void frames(const CodedMesh& mesh) {
-    const FrameSettings settings = make_frames(plan_.size, mesh);
-    const GofHeader gof{GofKind::kFrames, next_frame(), plan_.size.frames};
-    unit(UnitType::kGof, write_frame_gof_unit(gof, settings, mesh.topology()));
+  void frames(const OrderedMesh& mesh) {
+    const InterSettings settings = make_frames(plan_.size, mesh);
+    const GofHeader gof{GofKind::kInter, next_frame(), plan_.size.frames};
+    unit(UnitType::kGof, write_inter_gof_unit(gof, settings, mesh.topology()));
     const FrameOrder order(settings.pattern, gof.num_frames);
     FrameUnitWriter writer(mesh, settings);
     for (std::uint32_t place = 0; place < gof.num_frames; ++place) {

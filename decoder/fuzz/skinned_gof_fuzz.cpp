@@ -70,7 +70,7 @@ struct Unit {
 // Units of one stream, in order.
 class Units {
  public:
-  Units(const rlpc::SequenceHeader& header, const rlpc::CodedMeshes& meshes)
+  Units(const rlpc::SequenceHeader& header, const rlpc::OrderedMeshes& meshes)
       : header_(header), meshes_(meshes), parser_(header, meshes, {kMaxMemoryBytes, 0}) {}
 
   // False after an error.
@@ -87,7 +87,7 @@ class Units {
     }
     const rlpc::GofHeader gof = rlpc::parse_gof_header(bits, header_, first_frame);
     if (bits.error()) return false;
-    if (gof.kind == rlpc::GofKind::kTracks) {
+    if (gof.kind == rlpc::GofKind::kSharedRig) {
       return static_cast<bool>(parser_.tracks(bits, gof, models_));
     }
     return gof.kind == rlpc::GofKind::kSkinned &&
@@ -104,7 +104,7 @@ class Units {
   void finish_model() {
     const std::uint32_t idx = parser_.model_idx();
     const auto model = parser_.finish_model();
-    const rlpc::CodedMesh& mesh = meshes_[model->prediction];
+    const rlpc::OrderedMesh& mesh = meshes_[model->prediction];
     check_influences(*model, rlpc::complete_influences(mesh, *model));
     models_.of_idx[idx] = model;
     recons_[idx] =
@@ -113,7 +113,7 @@ class Units {
   void finish_gof() {
     const rlpc::SkinnedGof gof = parser_.finish();
     if (gof.model) return decode(rlpc::SkinnedRecon(recons_[gof.model_idx], gof));
-    const rlpc::CodedMesh& mesh = meshes_[gof.prediction];
+    const rlpc::OrderedMesh& mesh = meshes_[gof.prediction];
     check_influences(gof, rlpc::complete_influences(mesh, gof));
     decode(rlpc::SkinnedRecon(mesh, gof, header_.position_bits));
   }
@@ -128,7 +128,7 @@ class Units {
   }
 
   const rlpc::SequenceHeader& header_;
-  const rlpc::CodedMeshes& meshes_;
+  const rlpc::OrderedMeshes& meshes_;
   rlpc::SkinnedGofParser parser_;
   rlpc::UnitType open_ = rlpc::UnitType::kSlice;  // neither GOF nor skinned model
   rlpc::ModelSlots models_;
@@ -136,7 +136,7 @@ class Units {
 };
 
 // In the Main profile, the first of the pieces is a GOF, and the others are its slices.
-void decode(const rlpc::SequenceHeader& header, const rlpc::CodedMeshes& meshes,
+void decode(const rlpc::SequenceHeader& header, const rlpc::OrderedMeshes& meshes,
             std::uint32_t first_frame, std::span<const Piece> pieces) {
   Units units(header, meshes);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -175,7 +175,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       rlpc::parse_connectivity(connectivity_bits, header->num_vertices, header->num_triangles);
   if (!triangles) return 0;
   const rlpc::Topology topology = rlpc::make_topology(header->num_vertices, *triangles);
-  rlpc::CodedMeshes meshes(topology, *triangles);
+  rlpc::OrderedMeshes meshes(topology, *triangles);
   decode(*header, meshes, first_frame, std::span(pieces).subspan(kGofPiece));
   return 0;
 }

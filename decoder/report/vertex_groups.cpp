@@ -39,7 +39,7 @@ void add_kind(const SkinnedGof& gof, const StreamContext& context, VertexGroups&
   }
 }
 
-void add_kind(const FrameGof& gof, const StreamContext&, VertexGroups& groups) {
+void add_kind(const InterGof& gof, const StreamContext&, VertexGroups& groups) {
   if (gof.num_patches == 0) return;
   groups.kind = GroupKind::kPatches;
   groups.num_groups = gof.num_patches;

@@ -67,13 +67,13 @@ TEST_F(Bones, AreThoseOfTheGreatestWeightOrOfSeveralTheFirst) {
 TEST_F(Bones, OfAGofOfTracksAreThoseOfItsModel) {
   const auto model = std::make_shared<SkinnedModel>(static_cast<const SkinnedModel&>(gof_));
   gof_ = SkinnedGof();
-  gof_.kind = GofKind::kTracks;
+  gof_.kind = GofKind::kSharedRig;
   gof_.model = model;
   EXPECT_EQ(found(), (Groups{2, 1, 1}));
 }
 
 TEST(VertexGroups, PatchesOfAGofOfFrames) {
-  FrameGof gof;
+  InterGof gof;
   gof.num_patches = 3;
   gof.patch_of_vertex = {0, 2, 1, 2};
   AccessUnit access_unit;
@@ -87,7 +87,7 @@ TEST(VertexGroups, PatchesOfAGofOfFrames) {
 
 TEST(VertexGroups, GofsOfFramesWithoutPatchesHaveNone) {
   AccessUnit access_unit;
-  access_unit.gof = FrameGof();
+  access_unit.gof = InterGof();
   const VertexGroups groups = vertex_groups(access_unit, StreamContext());
   EXPECT_EQ(groups.kind, GroupKind::kNone);
   EXPECT_TRUE(groups.of_vertex.empty());

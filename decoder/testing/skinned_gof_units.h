@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/codec/mesh/coded_meshes.h"
+#include "common/codec/mesh/ordered_meshes.h"
 #include "common/codec/syntax/sequence_header.h"
 #include "decoder/codec/parse/parse_gof_header.h"
 #include "decoder/codec/parse/parse_skinned_gof.h"
@@ -61,7 +61,7 @@ class SkinnedGofUnits {
  private:
   SequenceHeader header_;
   Topology topology_;
-  CodedMeshes meshes_;
+  OrderedMeshes meshes_;
   SkinnedGofParser parser_;
 };
 

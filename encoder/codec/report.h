@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/kinds/inter/inter_gof.h"
 #include "common/codec/syntax/sequence_header.h"
 #include "encoder/codec/attributes/encode_attributes.h"
 #include "encoder/codec/metrics/metrics.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/kinds/inter/inter_gof.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "common/codec/mesh/clip.h"
 #include "encoder/codec/attributes/attribute_settings.h"
@@ -96,15 +96,15 @@ enum class KindChoice : std::uint8_t { kAuto, kClusters, kBones, kFrames };
 // Weights with which a vertex of a GOF of frames is predicted from others: learned from the
 // frames before; those of 8.11, from the first frame; or equal ones for its ring, as in
 // Stefanoski et al. 2007.
-enum class FrameWeights : std::uint8_t { kLearned, kGeometry, kPlain };
+enum class InterWeights : std::uint8_t { kLearned, kGeometry, kPlain };
 
 // Parameters of GOFs of frames, of the High profile.
-struct FrameTools {
+struct InterTools {
   // From which frames each is predicted; none: the cheapest of several patterns, for each GOF.
   // FramePattern::temporal_layers is not used.
   std::optional<FramePattern> pattern;
   std::uint32_t temporal_layers = 1;  // to which a stream can be cut, 1 to 8
-  FrameWeights weights = FrameWeights::kLearned;
+  InterWeights weights = InterWeights::kLearned;
   std::uint32_t layer_groups = 1;  // groups of vertex layers to which a stream can be cut
   // Parts of the mesh that can each move by one affine motion in a frame, up to 1024; 0: none;
   // not given: the cheapest of several numbers, for each GOF.
@@ -115,7 +115,7 @@ struct FrameTools {
   // written as they come. Frames of several layer groups share none.
   std::optional<std::uint32_t> frames_per_unit;
 
-  bool operator==(const FrameTools&) const = default;
+  bool operator==(const InterTools&) const = default;
 };
 
 // Hashes of decoded positions in the stream: none, one per GOF, one per frame.
@@ -162,7 +162,7 @@ struct EncoderSettings {
   // are of frames that are predicted from the one before; the target is a KG error, a maximum
   // error or lossless, and is not searched for.
   bool low_delay = false;
-  FrameTools frames;  // must be left at its defaults unless profile is kHigh
+  InterTools inter;  // must be left at its defaults unless profile is kHigh
   // Maximum frames per GOF; 0: 128; 256 in the High profile; in the Main profile up to 4096
   // (fewer for large meshes) with several clips and, in encode(), where long GOFs cost less;
   // kWholeSequence: one GOF.
@@ -194,16 +194,15 @@ struct EncoderSettings {
 
   // Temporal layers that the stream can be cut to.
   std::uint32_t temporal_layers() const {
-    return usable_kinds() == KindChoice::kFrames ? frames.temporal_layers
-                                                 : main.temporal_layers;
+    return usable_kinds() == KindChoice::kInter ? inter.temporal_layers : main.temporal_layers;
   }
   // Whether cut points were asked for at which a cut changes the first frame.
   bool has_detail_layers() const {
-    return main.component_groups > 1 || main.layer_groups > 1 || frames.layer_groups > 1;
+    return main.component_groups > 1 || main.layer_groups > 1 || inter.layer_groups > 1;
   }
   // The kinds of GOF that the target leaves.
   KindChoice usable_kinds() const {
-    return low_delay || target.kind == Target::kLossless ? KindChoice::kFrames : kinds;
+    return low_delay || target.kind == Target::kLossless ? KindChoice::kInter : kinds;
   }
 };
 

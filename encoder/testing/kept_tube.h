@@ -9,7 +9,7 @@
 
 #include "common/testing/tube.h"
 #include "encoder/codec/kinds/skinned/quantise/kept_model.h"
-#include "encoder/codec/kinds/skinned/skinned_gof_coder.h"
+#include "encoder/codec/kinds/skinned/skinned_span_coder.h"
 #include "encoder/codec/spans/lagrangian.h"
 
 namespace rlpc {
@@ -38,21 +38,21 @@ class KeptTube {
   KeptTube()
       : triangles_(tube_triangles(kRings, kSides)),
         topology_(make_topology(kVertices, triangles_)),
-        context{header_, settings, triangles_, CodedMeshes(topology_, triangles_, true)} {
+        context{header_, settings, triangles_, OrderedMeshes(topology_, triangles_, true)} {
     settings.profile = Profile::kHigh;
     settings.preset = Preset::kFast;
     header_.profile_idc = kProfileHigh;
     header_.num_vertices = kVertices;
     header_.position_bits = 20;
-    const GofFrames earlier = frames(bent, 0, kFrames, 1, true);
-    kept = SkinnedGofCoder(context, earlier).encode(kTubeStep, kTubeStep).model;
+    const SpanFrames earlier = frames(bent, 0, kFrames, 1, true);
+    kept = SkinnedSpanCoder(context, earlier).encode(kTubeStep, kTubeStep).model;
   }
   KeptTube(const KeptTube&) = delete;
   KeptTube& operator=(const KeptTube&) = delete;
 
-  static GofFrames frames(const Move& move, std::uint32_t first, std::uint32_t count,
-                          std::uint32_t num_gofs = 1, bool has_followers = false) {
-    GofFrames list{kVertices, count, {}, first, num_gofs, has_followers};
+  static SpanFrames frames(const Move& move, std::uint32_t first, std::uint32_t count,
+                           std::uint32_t num_gofs = 1, bool has_followers = false) {
+    SpanFrames list{kVertices, count, {}, first, num_gofs, has_followers};
     for (std::uint32_t f = first; f < first + count; ++f) {
       for (std::uint32_t v = 0; v < kVertices; ++v) {
         const double angle = 6.283185307 * (v % kSides) / kSides;
@@ -66,8 +66,8 @@ class KeptTube {
     return list;
   }
   // With a model of its own.
-  EncodedGof encode_alone(const GofFrames& of) const {
-    return SkinnedGofCoder(context, of).encode(kTubeStep, kTubeStep);
+  EncodedSpan encode_alone(const SpanFrames& of) const {
+    return SkinnedSpanCoder(context, of).encode(kTubeStep, kTubeStep);
   }
 
   EncoderSettings settings;

@@ -10,7 +10,7 @@
 #include "common/codec/mesh/mesh.h"
 #include "encoder/codec/partition/partition.h"
 #include "encoder/codec/partition/point_tree.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -22,8 +22,8 @@ struct PartitionScene {
 
   // Frames in which vertex v is at place(f, v).
   template <typename Place>
-  GofFrames frames(std::uint32_t num_frames, const Place& place) const {
-    GofFrames frames{num_vertices(), num_frames, {}};
+  SpanFrames frames(std::uint32_t num_frames, const Place& place) const {
+    SpanFrames frames{num_vertices(), num_frames, {}};
     for (std::uint32_t f = 0; f < num_frames; ++f) {
       for (std::uint32_t v = 0; v < num_vertices(); ++v) {
         const Point3 p = place(f, v);
@@ -32,7 +32,7 @@ struct PartitionScene {
     }
     return frames;
   }
-  GofFrames still() const {
+  SpanFrames still() const {
     return frames(1, [&](std::uint32_t /*f*/, std::uint32_t v) { return points[v]; });
   }
 

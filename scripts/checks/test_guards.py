@@ -108,7 +108,7 @@ class Layers(RealTree):
                                "decoder/codec/parse/access_unit_parser.cpp", "must not call")
 
     def test_files_of_meshes_know_nothing_of_coding(self):
-        self.include("encoder/meshes/obj/obj_reader.cpp", '#include "encoder/codec/spans/gof_coder.h"',
+        self.include("encoder/meshes/obj/obj_reader.cpp", '#include "encoder/codec/spans/span_coder.h"',
                      "must not include")
         self.include("decoder/meshes/mesh_sink.cpp", '#include "decoder/rlpc_decoder.h"',
                      "must not include")
@@ -288,7 +288,7 @@ class Constants(RealTree):
     def test_every_folder_of_the_search_is_checked(self):
         for name in ("encoder/codec/spans/component_cost.h", "encoder/codec/sequence/target/target_search.cpp",
                      "encoder/codec/kinds/cluster/cluster_gof_search.cpp",
-                     "encoder/codec/kinds/skinned/skinned_gof_coder.cpp",
+                     "encoder/codec/kinds/skinned/skinned_span_coder.cpp",
                      "encoder/codec/kinds/skinned/fit/bone_solver.cpp",
                      "encoder/codec/kinds/skinned/quantise/temporal_values.cpp"):
             with self.subTest(name=name):

@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "common/codec/kinds/cluster/cluster_gof.h"
-#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/kinds/inter/inter_gof.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "common/codec/syntax/gof_hash.h"
 #include "common/codec/syntax/gof_header.h"
@@ -17,7 +17,7 @@
 namespace rlpc {
 
 // A GOF of any kind.
-using AnyGof = std::variant<ClusterGof, SkinnedGof, FrameGof>;
+using AnyGof = std::variant<ClusterGof, SkinnedGof, InterGof>;
 
 // 6.12 slice_unit( ), 6.14.2 frame_unit( )
 struct SliceEntry {
@@ -45,9 +45,9 @@ struct AccessUnit {
 
   FrameCrcs frame_crcs() const {
     FrameCrcs crcs;
-    const auto* const gof_of_frames = std::get_if<FrameGof>(&gof);
+    const auto* const gof_of_frames = std::get_if<InterGof>(&gof);
     if (gof_of_frames == nullptr || !gof_of_frames->frame_hash_flag) return crcs;
-    for (const CodedFrame& frame : *gof_of_frames->frames) crcs.push_back(frame.frame_crc);
+    for (const InterFrame& frame : *gof_of_frames->frames) crcs.push_back(frame.frame_crc);
     return crcs;
   }
   const GofHeader& header() const {

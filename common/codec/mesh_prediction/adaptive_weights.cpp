@@ -39,7 +39,7 @@ class MeanOf {
 
 }  // namespace
 
-AdaptiveWeights::AdaptiveWeights(const CodedMesh& mesh, const GeometryWeights& weights,
+AdaptiveWeights::AdaptiveWeights(const OrderedMesh& mesh, const GeometryWeights& weights,
                                  const WeightSettings& settings,
                                  const std::array<std::span<const std::int32_t>, 3>& rest)
     : mesh_(mesh),

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "common/codec/kernels/kernels.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/mesh_prediction/geometry_weights.h"
 #include "common/memory/owned.h"
 
@@ -21,7 +21,7 @@ class AdaptiveWeights {
  public:
   // settings.num_adaptive_factors is at least 1; rest: as of GeometryWeights. Mesh and rest are
   // kept by reference.
-  AdaptiveWeights(const CodedMesh& mesh, const GeometryWeights& weights,
+  AdaptiveWeights(const OrderedMesh& mesh, const GeometryWeights& weights,
                   const WeightSettings& settings,
                   const std::array<std::span<const std::int32_t>, 3>& rest);
 
@@ -33,7 +33,7 @@ class AdaptiveWeights {
  private:
   friend class VertexAdaptation;
 
-  const CodedMesh& mesh_;
+  const OrderedMesh& mesh_;
   std::array<std::span<const std::int32_t>, 3> rest_;
   bool adapt_to_rest_;
   std::size_t num_adaptive_factors_;

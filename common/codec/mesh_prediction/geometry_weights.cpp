@@ -152,7 +152,7 @@ class VertexWeights {
 
 }  // namespace
 
-GeometryWeights::GeometryWeights(const CodedMesh& mesh, const WeightSettings& settings,
+GeometryWeights::GeometryWeights(const OrderedMesh& mesh, const WeightSettings& settings,
                                  const std::array<std::span<const std::int32_t>, 3>& rest,
                                  const VertexLists* outer)
     : first_(std::size_t{mesh.num_vertices()} + 1, 0) {

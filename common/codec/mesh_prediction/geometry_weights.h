@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/mesh/weight_settings.h"
 #include "common/memory/owned.h"
 
@@ -19,7 +19,7 @@ class GeometryWeights {
  public:
   // rest: x, y and z of the rest positions, [num_vertices] each, within 29 bits. The mesh must
   // have layers. outer: vertices that take the place of the outer rings; null: none do.
-  GeometryWeights(const CodedMesh& mesh, const WeightSettings& settings,
+  GeometryWeights(const OrderedMesh& mesh, const WeightSettings& settings,
                   const std::array<std::span<const std::int32_t>, 3>& rest,
                   const VertexLists* outer = nullptr);
 

@@ -43,7 +43,7 @@ Weights weights_of(const Patch& patch) {
   layers.ring.set(n - 1, std::span(order).first(patch.ring_size));
   layers.outer_ring.set(n - 1, std::span(order).subspan(patch.ring_size, patch.outer_size()));
   const Topology topology = make_topology(n, {});
-  const CodedMesh mesh(Prediction::kLayers, topology, layers);
+  const OrderedMesh mesh(Prediction::kLayers, topology, layers);
   std::array<std::vector<std::int32_t>, 3> planes;
   for (const Vec3i& p : patch.rest) {
     for (std::size_t c = 0; c < 3; ++c) planes[c].push_back(p[c]);

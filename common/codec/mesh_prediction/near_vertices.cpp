@@ -41,7 +41,7 @@ std::int64_t squared_distance(std::span<const std::int32_t> values, std::uint32_
 
 class NearSearch {
  public:
-  NearSearch(const CodedMesh& mesh, std::span<const std::int32_t> values)
+  NearSearch(const OrderedMesh& mesh, std::span<const std::int32_t> values)
       : mesh_(mesh), base_(mesh.vertices_of_layers(0, 1)), values_(values) {}
 
   NearList find(std::uint32_t v) {
@@ -96,7 +96,7 @@ class NearSearch {
     return base_.subspan(first, std::min(kBaseWindow, base_.size() - first));
   }
 
-  const CodedMesh& mesh_;
+  const OrderedMesh& mesh_;
   std::span<const std::uint32_t> base_;  // ascending
   std::span<const std::int32_t> values_;
   Vector<std::uint32_t> vertices_;
@@ -105,7 +105,7 @@ class NearSearch {
 
 }  // namespace
 
-VertexLists near_vertices(const CodedMesh& mesh, std::span<const std::int32_t> values) {
+VertexLists near_vertices(const OrderedMesh& mesh, std::span<const std::int32_t> values) {
   Vector<NearList> near(mesh.num_vertices());
   for_ranges(near.size(), kTogether, [&](std::size_t first, std::size_t end) {
     NearSearch search(mesh, values);

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 
 namespace rlpc {
 
@@ -19,6 +19,6 @@ inline constexpr std::size_t kMaxNear = 12;
 // too, for those in the base, and for those with few others. All come before v in the order.
 //
 //   values  positions [num_vertices][3], within 29 bits
-VertexLists near_vertices(const CodedMesh& mesh, std::span<const std::int32_t> values);
+VertexLists near_vertices(const OrderedMesh& mesh, std::span<const std::int32_t> values);
 
 }  // namespace rlpc

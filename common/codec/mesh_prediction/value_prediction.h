@@ -5,7 +5,7 @@
 #include <span>
 
 #include "common/codec/kernels/kernels.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/mesh_prediction/geometry_weights.h"
 
 namespace rlpc {
@@ -13,7 +13,7 @@ namespace rlpc {
 class ValuePrediction {
  public:
   // weights: null for rest positions and for GOFs without layers.
-  ValuePrediction(const CodedMesh& mesh, bool is_rest, const GeometryWeights* weights)
+  ValuePrediction(const OrderedMesh& mesh, bool is_rest, const GeometryWeights* weights)
       : mesh_(mesh), is_rest_(is_rest), weights_(weights), loops_(kernels().back()) {}
 
   // values: [num_vertices][n]; prediction: [n]; n: number of factors.
@@ -25,7 +25,7 @@ class ValuePrediction {
                          std::span<const std::int32_t> values,
                          std::span<std::int64_t> prediction) const;
 
-  const CodedMesh& mesh_;
+  const OrderedMesh& mesh_;
   bool is_rest_;
   const GeometryWeights* weights_;
   Kernels loops_;

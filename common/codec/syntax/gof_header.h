@@ -19,24 +19,24 @@ enum class GofKind : std::uint8_t {
 
 // The adjective of a kind, for messages: "a cluster GOF".
 constexpr const char* kind_name(GofKind kind) {
-  if (kind == GofKind::kFrames) return "frame";
-  return kind == GofKind::kClusters ? "cluster" : "skinned";
+  if (kind == GofKind::kInter) return "frame";
+  return kind == GofKind::kCluster ? "cluster" : "skinned";
 }
 
 // Table 7-1: the type of the units that may follow the GOF unit in its access unit, other than
 // its hash: slice units or frame units. None: there are no such units.
 constexpr std::optional<UnitType> slice_type(GofKind kind) {
-  if (kind == GofKind::kClusters) return std::nullopt;
-  return kind == GofKind::kFrames ? UnitType::kFrame : UnitType::kSlice;
+  if (kind == GofKind::kCluster) return std::nullopt;
+  return kind == GofKind::kInter ? UnitType::kFrame : UnitType::kSlice;
 }
 constexpr bool has_slices(GofKind kind) { return slice_type(kind).has_value(); }
 // 6.1 IsLive( ): whether frames of a GOF are output before it ends.
 constexpr bool is_live(const SequenceHeader& header, GofKind kind) {
-  return header.open_end_flag && kind == GofKind::kFrames;
+  return header.open_end_flag && kind == GofKind::kInter;
 }
 
 struct GofHeader {
-  GofKind kind = GofKind::kClusters;
+  GofKind kind = GofKind::kCluster;
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 1;
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "common/codec/mesh/coded_meshes.h"
+#include "common/codec/mesh/ordered_meshes.h"
 #include "common/codec/mesh/topology.h"
 #include "common/codec/syntax/sequence_header.h"
 
@@ -14,7 +14,7 @@ namespace rlpc {
 struct StreamContext {
   SequenceHeader header;
   Topology topology;
-  std::optional<CodedMeshes> meshes;  // if the profile has skinned GOFs
+  std::optional<OrderedMeshes> meshes;  // if the profile has skinned GOFs
 
   StreamContext() = default;
   StreamContext(const StreamContext&) = delete;

@@ -49,12 +49,12 @@ const Frames& frames_of(const BenchAnimation& animation) {
   return frames;
 }
 
-EncoderSettings settings_of(FrameWeights weights, std::uint32_t threads) {
+EncoderSettings settings_of(InterWeights weights, std::uint32_t threads) {
   EncoderSettings settings;
   settings.profile = Profile::kHigh;
   settings.low_delay = true;
   settings.target = {Target::kKg, 0.1};
-  settings.frames.weights = weights;
+  settings.inter.weights = weights;
   settings.gof_frames = EncoderSettings::kWholeSequence;
   settings.threads = threads;
   return settings;
@@ -91,7 +91,7 @@ void register_frames(const BenchAnimation& animation) {
         ->UseRealTime();
   };
   for (const auto& [name, weights] :
-       {std::pair{"learned", FrameWeights::kLearned}, {"geometry", FrameWeights::kGeometry}}) {
+       {std::pair{"learned", InterWeights::kLearned}, {"geometry", InterWeights::kGeometry}}) {
     for (const std::uint32_t threads : {1U, 2U}) {
       const std::string what =
           std::string("/weights:") + name + "/threads:" + std::to_string(threads);

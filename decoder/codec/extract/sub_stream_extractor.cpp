@@ -164,7 +164,7 @@ bool SubStreamExtractor::cuts_first_frame() const {
   if (summary_.gofs.empty()) return false;
   const GofSummary& gof = summary_.gofs.front();
   SliceCut cut = cut_;
-  if (gof.kind == GofKind::kFrames) cut.max_temporal_layers = SliceCut::kAll;
+  if (gof.kind == GofKind::kInter) cut.max_temporal_layers = SliceCut::kAll;
   return gof.is_cut_by(cut) || (gof.model && gof.model->is_cut_by(cut));
 }
 

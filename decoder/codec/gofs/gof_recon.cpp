@@ -44,7 +44,7 @@ std::unique_ptr<GofRecon> recon_of(const SkinnedGof& gof, const StreamContext& c
       SkinnedRecon((*context.meshes)[gof.prediction], gof, context.header.position_bits));
 }
 
-std::unique_ptr<GofRecon> recon_of(const FrameGof& gof, const StreamContext& context,
+std::unique_ptr<GofRecon> recon_of(const InterGof& gof, const StreamContext& context,
                                    ModelRecons&) {
   return std::make_unique<OrderedRecon>((*context.meshes)[Prediction::kLayers], gof,
                                         context.header.position_bits);

@@ -51,7 +51,7 @@ Result<bool> LiveGof::read_unit() {
 void LiveGof::decode_place() {
   const FrameOrder& order = parser_.order();
   const FramePlace& place = order[recon_->place()];
-  const CodedFrame coded = parser_.take_frame(place.frame);
+  const InterFrame coded = parser_.take_frame(place.frame);
   recon_->decode(place, order.last_use(place.frame), coded);
   Decoded& decoded = waiting_[place.frame];
   decoded.crc = coded.frame_crc;

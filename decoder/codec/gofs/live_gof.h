@@ -6,10 +6,10 @@
 #include <optional>
 #include <span>
 
-#include "common/codec/kinds/inter/recon/frame_recon.h"
+#include "common/codec/kinds/inter/recon/inter_recon.h"
 #include "common/codec/syntax/stream_context.h"
 #include "common/memory/owned.h"
-#include "decoder/codec/parse/parse_frame_gof.h"
+#include "decoder/codec/parse/parse_inter_gof.h"
 #include "decoder/codec/units/stream_reader.h"
 
 namespace rlpc {
@@ -52,8 +52,8 @@ class LiveGof : public Owned {
   UnitHeader gof_unit_;
   std::uint32_t first_frame_ = 0;
   std::uint64_t end_ = 0;  // of the units read
-  FrameGofParser parser_;
-  std::optional<FrameRecon> recon_;
+  InterGofParser parser_;
+  std::optional<InterRecon> recon_;
   bool ended_ = false;
   std::uint32_t next_output_ = 0;        // NextOutput
   Map<std::uint32_t, Decoded> waiting_;  // frames decoded before their turn

@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
-#include "common/codec/kinds/inter/frame_gof.h"
-#include "common/codec/kinds/inter/recon/frame_recon.h"
+#include "common/codec/kinds/inter/inter_gof.h"
+#include "common/codec/kinds/inter/recon/inter_recon.h"
 #include "common/memory/owned.h"
 #include "decoder/codec/gofs/gof_recon.h"
 
@@ -20,7 +20,7 @@ namespace rlpc {
 class OrderedRecon final : public GofRecon {
  public:
   // The mesh must outlive it.
-  OrderedRecon(const CodedMesh& mesh, FrameGof gof, int position_bits)
+  OrderedRecon(const OrderedMesh& mesh, InterGof gof, int position_bits)
       : mesh_(mesh),
         gof_(std::move(gof)),
         order_(gof_.pattern, gof_.num_frames),
@@ -37,13 +37,13 @@ class OrderedRecon final : public GofRecon {
   bool can_go_back_to(std::uint32_t place) const;
   void go_to(std::uint32_t frame) const;
 
-  const CodedMesh& mesh_;
-  FrameGof gof_;
+  const OrderedMesh& mesh_;
+  InterGof gof_;
   FrameOrder order_;
   int position_bits_;
   std::uint32_t num_kept_ = 0;
   mutable std::mutex decoding_;
-  mutable std::optional<FrameRecon> recon_;
+  mutable std::optional<InterRecon> recon_;
   // [frame]: positions of the last one asked for, of those kept before it, and of later ones
   // that have been decoded.
   mutable Map<std::uint32_t, Vector<std::int32_t>> decoded_;

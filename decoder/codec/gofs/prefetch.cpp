@@ -118,7 +118,7 @@ std::optional<Prefetch::Ahead> Prefetch::collect_at(const GofPlace& place) {
     if (!unit || unit->type() != UnitType::kModel) return std::nullopt;
     auto model = collect_model(*unit, bytes_left);
     if (!model) return std::nullopt;
-    for (const CodedUnit& part : model->coded) bytes_left -= part.payload.size();
+    for (const RawUnit& part : model->coded) bytes_left -= part.payload.size();
     model->before = ahead.models;
     slot = model;
     ahead.new_models.push_back(std::move(model));
@@ -179,9 +179,9 @@ std::optional<Prefetch::Ahead> Prefetch::collect(std::uint64_t offset,
     }
     auto model = collect_model(*unit, bytes_left);
     if (!model) return std::nullopt;
-    for (const CodedUnit& part : model->coded) bytes_left -= part.payload.size();
+    for (const RawUnit& part : model->coded) bytes_left -= part.payload.size();
     model->before = ahead.models;
-    const CodedUnit& first = model->coded.front();
+    const RawUnit& first = model->coded.front();
     BitReader r = units.bits(first.header, first.payload);
     ahead.models[parse_model_idx(r)] = model;
     offset = model->end;

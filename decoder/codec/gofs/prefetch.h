@@ -59,7 +59,7 @@ class Prefetch {
   struct ModelAhead {
     std::uint64_t offset = 0;
     std::uint64_t end = 0;
-    Vector<CodedUnit> coded;
+    Vector<RawUnit> coded;
     std::array<std::shared_ptr<ModelAhead>, kMaxModels> before;  // those alive
     std::mutex parsing;
     bool is_tried = false;
@@ -68,7 +68,7 @@ class Prefetch {
   using Slots = std::array<std::shared_ptr<ModelAhead>, kMaxModels>;  // by model_idx
 
   struct Ahead {
-    CodedAccessUnit coded;
+    RawAccessUnit coded;
     // Since the GOF before; at most kMaxModels, or the GOF is not prepared.
     Vector<std::shared_ptr<ModelAhead>> new_models;
     Slots models;                    // those alive

@@ -37,9 +37,9 @@ std::uint64_t memory_of(const SkinnedGof& gof, const SequenceHeader& header) {
          memory_of_vertices(header.num_vertices, gof.rest.order_flag);
 }
 
-std::uint64_t memory_of(const FrameGof& gof, const SequenceHeader& header) {
+std::uint64_t memory_of(const InterGof& gof, const SequenceHeader& header) {
   std::uint64_t bytes = memory_of_frames(header.num_vertices, gof.num_frames, gof);
-  for (const CodedFrame& frame : *gof.frames) {
+  for (const InterFrame& frame : *gof.frames) {
     bytes += memory_of_frame(header.num_vertices, frame.residual.num_large(), gof.num_patches);
   }
   return bytes;

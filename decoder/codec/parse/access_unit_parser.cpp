@@ -6,9 +6,9 @@
 #include "common/memory/owned.h"
 #include "decoder/codec/parse/memory_estimate.h"
 #include "decoder/codec/parse/parse_cluster_gof.h"
-#include "decoder/codec/parse/parse_frame_gof.h"
 #include "decoder/codec/parse/parse_gof_hash.h"
 #include "decoder/codec/parse/parse_gof_header.h"
+#include "decoder/codec/parse/parse_inter_gof.h"
 #include "decoder/codec/parse/parse_skinned_gof.h"
 
 namespace rlpc {
@@ -60,8 +60,8 @@ class SkinnedParser final : public GofParser {
       : parser_(context.header, *context.meshes, memory, cut) {}
 
   Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots& models) override {
-    return header.kind == GofKind::kTracks ? parser_.tracks(r, header, models)
-                                           : parser_.bones(r, header, models);
+    return header.kind == GofKind::kSharedRig ? parser_.tracks(r, header, models)
+                                              : parser_.bones(r, header, models);
   }
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
                      Vector<SliceEntry>& slices) override {
@@ -102,7 +102,7 @@ class FramesParser final : public GofParser {
   const StreamContext& context_;
   MemoryLimit memory_;
   SliceCut cut_;
-  std::optional<FrameGofParser> parser_;
+  std::optional<InterGofParser> parser_;
 };
 
 }  // namespace
@@ -115,12 +115,12 @@ AccessUnitParser::~AccessUnitParser() = default;
 
 std::unique_ptr<GofParser> AccessUnitParser::make_parser() const {
   switch (kind_) {
-    case GofKind::kClusters:
+    case GofKind::kCluster:
       return std::make_unique<ClusterParser>(context_, memory_);
     case GofKind::kSkinned:
-    case GofKind::kTracks:
+    case GofKind::kSharedRig:
       return std::make_unique<SkinnedParser>(context_, memory_, cut_);
-    case GofKind::kFrames:
+    case GofKind::kInter:
       return std::make_unique<FramesParser>(context_, memory_, cut_);
   }
   return nullptr;

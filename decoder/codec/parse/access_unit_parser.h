@@ -57,7 +57,7 @@ class AccessUnitParser {
   MemoryLimit memory_;
   SliceCut cut_;
   std::uint32_t num_frames_ = 0;
-  GofKind kind_ = GofKind::kClusters;
+  GofKind kind_ = GofKind::kCluster;
   std::unique_ptr<GofParser> parser_;
   AccessUnit access_unit_;
 };

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "common/codec/components/component_limits.h"
-#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/kinds/inter/inter_gof.h"
 #include "common/codec/kinds/skinned/model_slots.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "common/codec/syntax/sequence_header.h"
@@ -70,7 +70,7 @@ constexpr std::uint64_t memory_of_adaptive_weights(std::uint64_t num_vertices) {
 // several frames, neighbours and weights; with learned weights, for each temporal layer, errors
 // and a filter; models of layer groups, for each depth.
 inline std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t num_frames,
-                                      const FrameSettings& settings) {
+                                      const InterSettings& settings) {
   constexpr std::uint64_t kBytesPerFrame = 160;
   constexpr std::uint64_t kBytesPerVertex = 400;
   constexpr std::uint64_t kBytesOfOrder = 100;  // of the first frame: residuals, counterparts

@@ -11,7 +11,7 @@
 #include "common/codec/kinds/skinned/model_slots.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "common/codec/kinds/skinned/slice_models.h"
-#include "common/codec/mesh/coded_meshes.h"
+#include "common/codec/mesh/ordered_meshes.h"
 #include "common/codec/syntax/sequence_header.h"
 #include "common/memory/owned.h"
 #include "common/result.h"
@@ -31,7 +31,7 @@ std::uint32_t parse_model_idx(BitReader& r);
 class SkinnedGofParser {
  public:
   // All must outlive it.
-  SkinnedGofParser(const SequenceHeader& header, const CodedMeshes& meshes,
+  SkinnedGofParser(const SequenceHeader& header, const OrderedMeshes& meshes,
                    const MemoryLimit& memory, const SliceCut& cut = {})
       : header_(header), meshes_(meshes), memory_(memory), cut_(cut) {}
 
@@ -102,10 +102,10 @@ class SkinnedGofParser {
   bool may_follow(const SliceEntry& slice) const;
 
   const SequenceHeader& header_;
-  const CodedMeshes& meshes_;
+  const OrderedMeshes& meshes_;
   MemoryLimit memory_;
   SliceCut cut_;
-  const CodedMesh* mesh_ = nullptr;
+  const OrderedMesh* mesh_ = nullptr;
   Unit unit_ = Unit::kGof;
   SkinnedGof gof_;  // or skinned model
   std::uint64_t num_factors_ = 0;

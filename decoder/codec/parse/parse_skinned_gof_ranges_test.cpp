@@ -252,7 +252,7 @@ class Slices {
   }
 
   void add_residuals(SliceRecipe& slice, std::size_t num_factors) const {
-    const CodedMesh& mesh = meshes_[Prediction::kNone];
+    const OrderedMesh& mesh = meshes_[Prediction::kNone];
     slice.vertex_residuals(mesh, mesh.order(), num_factors);
   }
   Result<bool> parse(SliceRecipe& slice) { return units_.slice(slice.payload()); }
@@ -267,7 +267,7 @@ class Slices {
  private:
   SequenceHeader header_;
   Topology topology_;
-  CodedMeshes meshes_;
+  OrderedMeshes meshes_;
   SkinnedGofUnits units_;
 };
 

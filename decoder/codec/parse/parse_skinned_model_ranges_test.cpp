@@ -37,8 +37,8 @@ class Units {
     BitReader r(payload);
     const GofHeader header = parse_gof_header(r, header_, 0);
     if (r.error()) return *r.error();
-    return header.kind == GofKind::kTracks ? parser_.tracks(r, header, models)
-                                           : parser_.bones(r, header, models);
+    return header.kind == GofKind::kSharedRig ? parser_.tracks(r, header, models)
+                                              : parser_.bones(r, header, models);
   }
   Result<bool> slice(SliceRecipe& recipe) {
     const Bytes payload = recipe.payload();
@@ -47,7 +47,7 @@ class Units {
   }
   // Residuals of all vertices.
   void add_residuals(SliceRecipe& slice, std::size_t num_factors) const {
-    const CodedMesh& mesh = meshes_[Prediction::kNone];
+    const OrderedMesh& mesh = meshes_[Prediction::kNone];
     slice.vertex_residuals(mesh, mesh.order(), num_factors);
   }
   Result<bool> rest() {
@@ -72,7 +72,7 @@ class Units {
  private:
   SequenceHeader header_;
   Topology topology_;
-  CodedMeshes meshes_;
+  OrderedMeshes meshes_;
   SkinnedGofParser parser_;
 };
 

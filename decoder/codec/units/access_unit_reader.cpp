@@ -41,10 +41,10 @@ Result<AccessUnit> AccessUnitReader::read(const UnitHeader& gof_unit, std::uint3
   return parser.finish();
 }
 
-std::optional<CodedAccessUnit> AccessUnitReader::collect(const UnitHeader& gof_unit,
-                                                         std::uint32_t first_frame,
-                                                         std::uint64_t max_memory_bytes) {
-  CodedAccessUnit coded;
+std::optional<RawAccessUnit> AccessUnitReader::collect(const UnitHeader& gof_unit,
+                                                       std::uint32_t first_frame,
+                                                       std::uint64_t max_memory_bytes) {
+  RawAccessUnit coded;
   std::uint64_t num_bytes = 0;
   for (std::optional<UnitHeader> unit = gof_unit; unit;) {
     num_bytes += unit->size;
@@ -64,8 +64,8 @@ std::optional<CodedAccessUnit> AccessUnitReader::collect(const UnitHeader& gof_u
   return coded;
 }
 
-Result<AccessUnit> AccessUnitReader::parse(const CodedAccessUnit& coded,
-                                           const ModelSlots& models, const SliceCut& cut,
+Result<AccessUnit> AccessUnitReader::parse(const RawAccessUnit& coded, const ModelSlots& models,
+                                           const SliceCut& cut,
                                            std::uint64_t max_memory_bytes) const {
   const MemoryLimit memory = limit_ahead(max_memory_bytes);
   const std::uint64_t of_models = memory_of_models(models);
@@ -136,9 +136,9 @@ Result<ParsedModel> AccessUnitReader::read_model(const UnitHeader& model_unit,
   return parser.finish();
 }
 
-std::optional<Vector<CodedUnit>> AccessUnitReader::collect_model(
-    const UnitHeader& model_unit, std::uint64_t max_memory_bytes) {
-  Vector<CodedUnit> coded;
+std::optional<Vector<RawUnit>> AccessUnitReader::collect_model(const UnitHeader& model_unit,
+                                                               std::uint64_t max_memory_bytes) {
+  Vector<RawUnit> coded;
   std::uint64_t num_bytes = 0;
   for (std::optional<UnitHeader> unit = model_unit; unit;) {
     num_bytes += unit->size;
@@ -153,7 +153,7 @@ std::optional<Vector<CodedUnit>> AccessUnitReader::collect_model(
   return coded;
 }
 
-Result<ParsedModel> AccessUnitReader::parse_model(const Vector<CodedUnit>& coded,
+Result<ParsedModel> AccessUnitReader::parse_model(const Vector<RawUnit>& coded,
                                                   const ModelSlots& models, const SliceCut& cut,
                                                   std::uint64_t max_memory_bytes) const {
   const MemoryLimit memory = limit_ahead(max_memory_bytes);
@@ -195,7 +195,7 @@ Result<std::optional<UnitHeader>> AccessUnitReader::unit_after(const UnitHeader&
   if (!next) return next.error();
   const bool is_frames = slice == UnitType::kFrame;
   const bool may_have_hash =
-      wants_hash_ && !(is_frames && is_live(context_.header, GofKind::kFrames));
+      wants_hash_ && !(is_frames && is_live(context_.header, GofKind::kInter));
   const bool follows = (slice && next->type() == *slice) ||
                        (may_have_hash && next->type() == UnitType::kGofHash);
   return follows ? Next(*next) : Next();

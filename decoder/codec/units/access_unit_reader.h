@@ -18,15 +18,15 @@
 
 namespace rlpc {
 
-struct CodedUnit {
+struct RawUnit {
   UnitHeader header;
   Vector<std::uint8_t> payload;
 };
 
 // The units of an access unit, not parsed except for the GOF header.
-struct CodedAccessUnit {
+struct RawAccessUnit {
   GofHeader gof;
-  Vector<CodedUnit> units;  // the GOF unit first
+  Vector<RawUnit> units;  // the GOF unit first
 
   // Bytes from the start of the stream.
   std::uint64_t end() const { return units.back().header.end(); }
@@ -71,15 +71,15 @@ class AccessUnitReader {
 
   // read() in two steps; parse() may run on another thread. max_memory_bytes limits the
   // payloads and, separately, the parsed result. If a step fails, read() reports the error.
-  std::optional<CodedAccessUnit> collect(const UnitHeader& gof_unit, std::uint32_t first_frame,
-                                         std::uint64_t max_memory_bytes);
+  std::optional<RawAccessUnit> collect(const UnitHeader& gof_unit, std::uint32_t first_frame,
+                                       std::uint64_t max_memory_bytes);
   // cut: one that no set_cut() changes.
-  Result<AccessUnit> parse(const CodedAccessUnit& coded, const ModelSlots& models,
+  Result<AccessUnit> parse(const RawAccessUnit& coded, const ModelSlots& models,
                            const SliceCut& cut, std::uint64_t max_memory_bytes) const;
   // The same for a skinned model.
-  std::optional<Vector<CodedUnit>> collect_model(const UnitHeader& model_unit,
-                                                 std::uint64_t max_memory_bytes);
-  Result<ParsedModel> parse_model(const Vector<CodedUnit>& coded, const ModelSlots& models,
+  std::optional<Vector<RawUnit>> collect_model(const UnitHeader& model_unit,
+                                               std::uint64_t max_memory_bytes);
+  Result<ParsedModel> parse_model(const Vector<RawUnit>& coded, const ModelSlots& models,
                                   const SliceCut& cut, std::uint64_t max_memory_bytes) const;
 
  private:

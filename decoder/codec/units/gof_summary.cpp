@@ -56,9 +56,9 @@ void add_kind(const SkinnedGof& gof, GofSummary& summary) {
       temporal_layers_of(gof)};
 }
 
-void add_kind(const FrameGof& gof, GofSummary& summary) {
+void add_kind(const InterGof& gof, GofSummary& summary) {
   const auto repeated = std::count_if(gof.frames->begin(), gof.frames->end(),
-                                      [](const CodedFrame& f) { return f.repeated; });
+                                      [](const InterFrame& f) { return f.repeated; });
   summary.first_group = "frames";
   summary.layer_group_size = gof.layer_group_size;
   summary.figures = {

@@ -91,7 +91,7 @@ struct ModelSummary : SlicedSummary {
 };
 
 struct GofSummary : SlicedSummary {
-  GofKind kind = GofKind::kClusters;
+  GofKind kind = GofKind::kCluster;
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
   std::shared_ptr<const ModelSummary> model;  // that it uses; null: none

@@ -7,13 +7,13 @@
 namespace rlpc {
 namespace {
 
-bool has_residuals(const CodedFrame& frame, std::size_t v) {
+bool has_residuals(const InterFrame& frame, std::size_t v) {
   if (frame.residual.size() == 0) return false;
   return frame.residual[3 * v] != 0 || frame.residual[3 * v + 1] != 0 ||
          frame.residual[3 * v + 2] != 0;
 }
 
-VertexModes modes_of(const CodedFrame& frame, const PatchOfVertex& patch_of_vertex) {
+VertexModes modes_of(const InterFrame& frame, const PatchOfVertex& patch_of_vertex) {
   VertexModes modes;
   if (frame.repeated) return modes;
   for (std::uint32_t v = 0; v < patch_of_vertex.size(); ++v) {
@@ -28,10 +28,10 @@ VertexModes modes_of(const CodedFrame& frame, const PatchOfVertex& patch_of_vert
 
 }  // namespace
 
-Vector<VertexModes> vertex_modes(const FrameGof& gof) {
+Vector<VertexModes> vertex_modes(const InterGof& gof) {
   Vector<VertexModes> modes;
   if (gof.num_patches == 0) return modes;
-  for (const CodedFrame& frame : *gof.frames) {
+  for (const InterFrame& frame : *gof.frames) {
     modes.push_back(modes_of(frame, gof.patch_of_vertex));
   }
   return modes;

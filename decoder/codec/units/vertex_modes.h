@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/kinds/inter/inter_gof.h"
 #include "common/memory/owned.h"
 
 namespace rlpc {
@@ -18,6 +18,6 @@ struct VertexModes {
 };
 
 // [num_frames]; empty if the GOF has no patches.
-Vector<VertexModes> vertex_modes(const FrameGof& gof);
+Vector<VertexModes> vertex_modes(const InterGof& gof);
 
 }  // namespace rlpc

@@ -11,23 +11,23 @@ namespace rlpc {
 namespace {
 
 // Two, three and one vertices in three patches.
-FrameGof gof_of(std::vector<CodedFrame> frames) {
-  FrameGof gof;
+InterGof gof_of(std::vector<InterFrame> frames) {
+  InterGof gof;
   gof.num_patches = 3;
   gof.patch_of_vertex = {0, 1, 1, 2, 0, 1};
-  gof.frames = std::make_shared<std::vector<CodedFrame>>(std::move(frames));
+  gof.frames = std::make_shared<std::vector<InterFrame>>(std::move(frames));
   return gof;
 }
 
-CodedFrame frame_with(PatchMode first, PatchMode second, PatchMode third) {
-  CodedFrame frame;
+InterFrame frame_with(PatchMode first, PatchMode second, PatchMode third) {
+  InterFrame frame;
   frame.layer_groups = 1;
   frame.patches = {{first, {}}, {second, {}}, {third, {}}};
   return frame;
 }
 
 TEST(VertexModesOfFrames, ResidualsOfAnyAxisCount) {
-  CodedFrame frame = frame_with(PatchMode::kNeighbours, PatchMode::kMotion, PatchMode::kAlone);
+  InterFrame frame = frame_with(PatchMode::kNeighbours, PatchMode::kMotion, PatchMode::kAlone);
   frame.residual = CompactResiduals(18);
   frame.residual.set(3, 1);      // vertex 1
   frame.residual.set(8, -1000);  // vertex 2
@@ -38,16 +38,16 @@ TEST(VertexModesOfFrames, ResidualsOfAnyAxisCount) {
 }
 
 TEST(VertexModesOfFrames, FramesWithoutMotionsOrResiduals) {
-  CodedFrame repeated;
+  InterFrame repeated;
   repeated.repeated = 0;
   const auto modes = vertex_modes(gof_of(
-      {CodedFrame{}, frame_with(PatchMode::kMotion, PatchMode::kNeighbours, PatchMode::kMotion),
+      {InterFrame{}, frame_with(PatchMode::kMotion, PatchMode::kNeighbours, PatchMode::kMotion),
        repeated}));
   EXPECT_EQ(modes, (std::vector<VertexModes>{{6, 0, 0}, {3, 0, 3}, {0, 0, 0}}));
 }
 
 TEST(VertexModesOfFrames, NoneWithoutPatches) {
-  FrameGof gof = gof_of({CodedFrame{}});
+  InterGof gof = gof_of({InterFrame{}});
   gof.num_patches = 0;
   gof.patch_of_vertex.clear();
   EXPECT_TRUE(vertex_modes(gof).empty());

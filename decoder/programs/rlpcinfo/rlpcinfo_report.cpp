@@ -180,7 +180,7 @@ void print_kinds(const StreamSummary& stream) {
       if (gof.kind == kind) gofs.push_back(&gof);
     }
     print_figures(
-        kind == GofKind::kTracks ? "GOFs of tracks" : std::string(kind_name(kind)) + " GOFs",
+        kind == GofKind::kSharedRig ? "GOFs of tracks" : std::string(kind_name(kind)) + " GOFs",
         gofs);
   }
 }
@@ -275,7 +275,7 @@ void print_gof(const GofSummary& gof) {
   const std::string what = gof.model
                                ? "tracks of skinned model " + std::to_string(gof.model->number)
                                : figures_of(gof)[0];  // the table has the others
-  const char* units = gof.kind == GofKind::kFrames ? "frame units" : "slices";
+  const char* units = gof.kind == GofKind::kInter ? "frame units" : "slices";
   std::printf("%s in %" PRIu64 " bytes; %s in bytes\n", what.c_str(), gof.bytes, units);
   print_slices(gof, "GOF to here");
   print_vertex_modes(gof);

@@ -33,7 +33,7 @@ struct AffineMotion {
 
 class MotionParts {
  public:
-  MotionParts(const GofFrames& frames, const Graph& graph)
+  MotionParts(const SpanFrames& frames, const Graph& graph)
       : graph_(graph), partition_(frames.num_vertices), error_(frames.num_vertices) {
     const std::uint32_t moved = frames.num_frames - 1;
     const std::uint32_t sampled = std::min(moved, kSampleFrames);
@@ -201,7 +201,7 @@ bool MotionParts::assign() {
 
 }  // namespace
 
-Partition motion_partition(const GofFrames& frames, const Graph& graph, std::uint32_t count) {
+Partition motion_partition(const SpanFrames& frames, const Graph& graph, std::uint32_t count) {
   return MotionParts(frames, graph).run(count);
 }
 

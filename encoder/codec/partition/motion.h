@@ -5,7 +5,7 @@
 
 #include "encoder/codec/partition/graph.h"
 #include "encoder/codec/partition/partition.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -17,6 +17,6 @@ namespace rlpc {
 //   frames  at least two
 //   graph   of the mesh, connected
 //   count   1 to kMaxParts
-Partition motion_partition(const GofFrames& frames, const Graph& graph, std::uint32_t count);
+Partition motion_partition(const SpanFrames& frames, const Graph& graph, std::uint32_t count);
 
 }  // namespace rlpc

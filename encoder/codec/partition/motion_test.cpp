@@ -13,7 +13,8 @@
 namespace rlpc {
 namespace {
 
-Partition by_motion(const PartitionScene& scene, const GofFrames& frames, std::uint32_t count) {
+Partition by_motion(const PartitionScene& scene, const SpanFrames& frames,
+                    std::uint32_t count) {
   return motion_partition(frames, make_mesh_graph(scene.points, scene.triangles), count);
 }
 
@@ -32,7 +33,8 @@ Point3 hinged(const PartitionScene& scene, std::uint32_t f, std::uint32_t v) {
 TEST(MotionPartition, FindsTheMovingParts) {
   PartitionScene scene;
   scene.add_grid(31, 8);
-  const GofFrames frames = scene.frames(6, [&](auto f, auto v) { return hinged(scene, f, v); });
+  const SpanFrames frames =
+      scene.frames(6, [&](auto f, auto v) { return hinged(scene, f, v); });
   const Partition partition = by_motion(scene, frames, 3);
   EXPECT_EQ(parts_of(partition).size(), 3U);
   for (std::uint32_t v = 0; v < partition.size(); ++v) {
@@ -46,7 +48,7 @@ TEST(MotionPartition, TellsPartsApartWhereverTheyAre) {
   PartitionScene scene;
   scene.add_grid(10, 10);
   scene.add_grid(10, 10, {5, 5, 5});  // among the first
-  const GofFrames frames = scene.frames(4, [&](std::uint32_t f, std::uint32_t v) {
+  const SpanFrames frames = scene.frames(4, [&](std::uint32_t f, std::uint32_t v) {
     Point3 p = scene.points[v];
     p[v < 100 ? 0 : 1] += 10.0 * f;
     return p;
@@ -60,7 +62,7 @@ TEST(MotionPartition, TellsPartsApartWhereverTheyAre) {
 TEST(MotionPartition, HasOnePartIfNothingMoves) {
   PartitionScene scene;
   scene.add_grid(10, 10);
-  const GofFrames frames =
+  const SpanFrames frames =
       scene.frames(5, [&](std::uint32_t /*f*/, std::uint32_t v) { return scene.points[v]; });
   EXPECT_EQ(parts_of(by_motion(scene, frames, 4)).size(), 1U);
 }
@@ -69,7 +71,7 @@ TEST(MotionPartition, HasOnePartIfNothingMoves) {
 TEST(MotionPartition, SurvivesOutliers) {
   PartitionScene scene;
   scene.add_grid(31, 8);
-  const GofFrames frames = scene.frames(6, [&](std::uint32_t f, std::uint32_t v) {
+  const SpanFrames frames = scene.frames(6, [&](std::uint32_t f, std::uint32_t v) {
     Point3 p = hinged(scene, f, v);
     if (v == 77) p[1] += f % 2 == 0 ? 40.0 : -40.0;
     return p;

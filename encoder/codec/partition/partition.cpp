@@ -13,7 +13,7 @@
 namespace rlpc {
 namespace {
 
-std::vector<Point3> first_frame(const GofFrames& frames) {
+std::vector<Point3> first_frame(const SpanFrames& frames) {
   std::vector<Point3> points;
   points.reserve(frames.num_vertices);
   for (std::uint32_t v = 0; v < frames.num_vertices; ++v) {
@@ -25,7 +25,7 @@ std::vector<Point3> first_frame(const GofFrames& frames) {
 
 }  // namespace
 
-Partition partition_vertices(PartitionMethod method, const GofFrames& frames,
+Partition partition_vertices(PartitionMethod method, const SpanFrames& frames,
                              std::span<const Triangle> triangles, std::uint32_t count) {
   assert(method != PartitionMethod::kSeeds && count > 0 && count <= kMaxParts);
   const std::uint32_t most = std::min(count, frames.num_vertices);

@@ -10,7 +10,7 @@
 
 #include "common/codec/mesh/mesh.h"
 #include "encoder/codec/settings.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -25,7 +25,7 @@ inline constexpr std::uint32_t kMaxParts = 1024;  // fixed: clusters of the high
 //   method     not kSeeds
 //   frames     at least one, with at least one vertex
 //   triangles  none: a point cloud
-Partition partition_vertices(PartitionMethod method, const GofFrames& frames,
+Partition partition_vertices(PartitionMethod method, const SpanFrames& frames,
                              std::span<const Triangle> triangles, std::uint32_t count);
 
 inline std::uint32_t num_parts(const Partition& partition) {

@@ -21,7 +21,7 @@ constexpr std::array kMethods{PartitionMethod::kKway, PartitionMethod::kLloyd,
 class PartitionMethods : public testing::TestWithParam<PartitionMethod> {
  protected:
   // Checks what every partition promises.
-  Partition partition(const GofFrames& frames, std::span<const Triangle> triangles,
+  Partition partition(const SpanFrames& frames, std::span<const Triangle> triangles,
                       std::uint32_t count) const {
     Partition parts = partition_vertices(GetParam(), frames, triangles, count);
     EXPECT_EQ(parts.size(), frames.num_vertices);
@@ -38,7 +38,7 @@ class PartitionMethods : public testing::TestWithParam<PartitionMethod> {
 };
 
 // Bends and shakes the points.
-GofFrames shaken(const PartitionScene& scene, std::uint32_t num_frames) {
+SpanFrames shaken(const PartitionScene& scene, std::uint32_t num_frames) {
   std::minstd_rand random(3);
   return scene.frames(num_frames, [&](std::uint32_t f, std::uint32_t v) {
     Point3 p = scene.points[v];
@@ -51,7 +51,7 @@ GofFrames shaken(const PartitionScene& scene, std::uint32_t num_frames) {
 TEST_P(PartitionMethods, DivideAGridIntoAsManyPartsAsAsked) {
   PartitionScene scene;
   scene.add_grid(20, 15);
-  const GofFrames frames = shaken(scene, 5);
+  const SpanFrames frames = shaken(scene, 5);
   for (const std::uint32_t count : {1U, 2U, 3U, 8U, 31U}) {
     EXPECT_EQ(num_parts(partition(frames, scene.triangles, count)), count);
   }
@@ -102,7 +102,7 @@ TEST_P(PartitionMethods, TakeTheMostParts) {
 TEST_P(PartitionMethods, DoNotDependOnThreads) {
   PartitionScene scene;
   scene.add_grid(70, 60);  // several ranges of vertices
-  const GofFrames frames = shaken(scene, 4);
+  const SpanFrames frames = shaken(scene, 4);
   const Partition alone = partition(frames, scene.triangles, 9);
   const Threads threads(3);
   EXPECT_EQ(partition(frames, scene.triangles, 9), alone);
@@ -119,7 +119,7 @@ TEST(NumberParts, ByTheirLowestVertices) {
 TEST(PartitionByMotion, IsByPositionsIfThereIsOneFrame) {
   PartitionScene scene;
   scene.add_grid(20, 15);
-  const GofFrames frames = scene.still();
+  const SpanFrames frames = scene.still();
   EXPECT_EQ(partition_vertices(PartitionMethod::kMotion, frames, scene.triangles, 5),
             partition_vertices(PartitionMethod::kLloyd, frames, scene.triangles, 5));
 }

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/codec/mesh/coded_meshes.h"
+#include "common/codec/mesh/ordered_meshes.h"
 #include "common/codec/mesh/topology.h"
 
 namespace rlpc {
@@ -41,7 +41,7 @@ struct Sheet {
 TEST(CounterpartSearch, RestsAfterLongSearches) {
   const Sheet sheet;
   const Topology topology = make_topology(kWidth * kWidth, sheet.triangles);
-  const CodedMeshes meshes(topology, sheet.triangles);
+  const OrderedMeshes meshes(topology, sheet.triangles);
   const RestOrder& order = meshes[Prediction::kLayers].rest_order();
   CounterpartSearch search(order, sheet.wanted, kStep, kPositionBits);
   Counterparts counterparts(order);

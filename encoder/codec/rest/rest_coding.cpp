@@ -91,7 +91,7 @@ class RestCoder {
     search_.emplace(order, wanted, rest_step, position_bits);
   }
 
-  CodedRest code() {
+  RestEncoding code() {
     for (const std::uint32_t v : order_.order()) {
       writer_.start(v);
       if (search_) choose_counterpart(v);
@@ -149,7 +149,7 @@ class RestCoder {
   const RestOrder& order_;
   std::span<const std::int32_t> wanted_;
   double step_;
-  CodedRest coded_;
+  RestEncoding coded_;
   RestRecon recon_;
   CountingSection<BitCost> section_;
   RestWriter writer_;
@@ -158,12 +158,12 @@ class RestCoder {
 
 }  // namespace
 
-CodedRest code_rest_in_order(const CodedMesh& mesh, std::span<const std::int32_t> wanted,
-                             std::uint32_t rest_step, int position_bits,
-                             const RestChoices& choices) {
-  std::optional<CodedRest> best;
+RestEncoding code_rest_in_order(const OrderedMesh& mesh, std::span<const std::int32_t> wanted,
+                                std::uint32_t rest_step, int position_bits,
+                                const RestChoices& choices) {
+  std::optional<RestEncoding> best;
   const auto attempt = [&](const RestSettings& settings) {
-    CodedRest coded =
+    RestEncoding coded =
         RestCoder(mesh.rest_order(), wanted, rest_step, position_bits, settings).code();
     if (!best || coded.cost < best->cost) best = std::move(coded);
   };
@@ -188,7 +188,7 @@ CodedRest code_rest_in_order(const CodedMesh& mesh, std::span<const std::int32_t
   return std::move(*best);
 }
 
-double rest_cost_in_layers(const CodedMesh& mesh, std::span<const std::int32_t> wanted,
+double rest_cost_in_layers(const OrderedMesh& mesh, std::span<const std::int32_t> wanted,
                            std::uint32_t rest_step, std::span<const std::int32_t> residual,
                            std::span<const std::int32_t> values) {
   VertexModels models;

@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/rest/rest_shape.h"
 
 namespace rlpc {
 
-struct CodedRest {
+struct RestEncoding {
   RestSettings settings;
   std::vector<std::int32_t> residual;     // [num_vertices][3]
   std::vector<std::int32_t> values;       // as decoded, [num_vertices][3]
@@ -27,13 +27,13 @@ struct RestChoices {
 };
 
 // wanted: [num_vertices][3], 1/16 grid units, in the range of rest positions.
-CodedRest code_rest_in_order(const CodedMesh& mesh, std::span<const std::int32_t> wanted,
-                             std::uint32_t rest_step, int position_bits,
-                             const RestChoices& choices);
+RestEncoding code_rest_in_order(const OrderedMesh& mesh, std::span<const std::int32_t> wanted,
+                                std::uint32_t rest_step, int position_bits,
+                                const RestChoices& choices);
 
 // The cost of rest positions coded in the order of the mesh (9.8.4): their residuals and values
 // as decoded, [num_vertices][3].
-double rest_cost_in_layers(const CodedMesh& mesh, std::span<const std::int32_t> wanted,
+double rest_cost_in_layers(const OrderedMesh& mesh, std::span<const std::int32_t> wanted,
                            std::uint32_t rest_step, std::span<const std::int32_t> residual,
                            std::span<const std::int32_t> values);
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/codec/bits/int_math.h"
-#include "common/codec/mesh/coded_meshes.h"
+#include "common/codec/mesh/ordered_meshes.h"
 #include "common/codec/mesh_prediction/rest_recon.h"
 
 namespace rlpc {
@@ -71,11 +71,11 @@ struct Coded {
                                 kPositionBits, {.counterparts = counterparts})) {}
 
   Topology topology;
-  CodedMeshes meshes;
-  CodedRest rest;
+  OrderedMeshes meshes;
+  RestEncoding rest;
 };
 
-int count_counterparts(const CodedRest& rest) {
+int count_counterparts(const RestEncoding& rest) {
   int count = 0;
   for (const Counterpart& x : rest.counterparts) count += x.flag || x.new_flag ? 1 : 0;
   return count;
@@ -119,7 +119,7 @@ TEST(RestCoding, ValuesAreWithinHalfAStepAsDecoded) {
 TEST(RestCoding, AnOrderOfItsOwnTakesFewerBitsThanLayers) {
   const TwoSheets sheets(false);
   const Coded coded(sheets, false);
-  const CodedMesh& mesh = coded.meshes[Prediction::kLayers];
+  const OrderedMesh& mesh = coded.meshes[Prediction::kLayers];
   std::vector<std::int32_t> residual(sheets.wanted.size());
   std::vector<std::int32_t> values(sheets.wanted.size());
   for (const std::uint32_t v : mesh.order()) {

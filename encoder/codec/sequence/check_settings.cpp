@@ -81,7 +81,7 @@ std::optional<InputError> check_low_delay(const EncoderSettings& s) {
         "low delay needs --profile high (version 1.2, in preparation): use that, or leave out "
         "--low-delay"};
   }
-  if (s.kinds != KindChoice::kAuto && s.kinds != KindChoice::kFrames) {
+  if (s.kinds != KindChoice::kAuto && s.kinds != KindChoice::kInter) {
     return InputError{"low delay needs GOFs of frames: leave out --gof-kind"};
   }
   if (s.target.kind == Target::kBpvf) {
@@ -89,7 +89,7 @@ std::optional<InputError> check_low_delay(const EncoderSettings& s) {
         "without a delay, a rate cannot be searched for: use --quality, --kg, --max-error or "
         "--lossless BITS instead of --bpvf"};
   }
-  const FramePattern::Kind pattern = s.frames.pattern.value_or(FramePattern{}).kind;
+  const FramePattern::Kind pattern = s.inter.pattern.value_or(FramePattern{}).kind;
   if (pattern != FramePattern::kPrevious && pattern != FramePattern::kFirst) {
     return InputError{
         "low delay needs frames that are coded in their order: use --frame-pattern previous or "
@@ -99,26 +99,26 @@ std::optional<InputError> check_low_delay(const EncoderSettings& s) {
 }
 
 std::optional<InputError> check_pattern(const EncoderSettings& s) {
-  const std::uint32_t layers = s.frames.temporal_layers;
-  if (!s.frames.pattern && !s.low_delay) {
+  const std::uint32_t layers = s.inter.temporal_layers;
+  if (!s.inter.pattern && !s.low_delay) {
     constexpr std::uint32_t kMost = kMaxPatternPeriodLog2 + 1;  // fixed: format
     if (layers >= 1 && layers <= kMost) return std::nullopt;
     return InputError{"without --frame-pattern, there are 1 to " + std::to_string(kMost) +
                       " temporal layers (--temporal-layers)"};
   }
-  FramePattern pattern = s.frames.pattern.value_or(FramePattern{});
+  FramePattern pattern = s.inter.pattern.value_or(FramePattern{});
   pattern.temporal_layers = layers;
   if (auto error = error_of_pattern(pattern)) return InputError{*error};
   return std::nullopt;
 }
 
 std::optional<InputError> check_kinds(const EncoderSettings& s) {
-  if (s.kinds == KindChoice::kBones && s.profile == Profile::kBaseline) {
+  if (s.kinds == KindChoice::kSkinned && s.profile == Profile::kBaseline) {
     return InputError{
         "the Baseline profile has no bones: use --profile main or high, or leave "
         "out --gof-kind"};
   }
-  if (s.kinds == KindChoice::kFrames && s.profile != Profile::kHigh) {
+  if (s.kinds == KindChoice::kInter && s.profile != Profile::kHigh) {
     return InputError{"GOFs of frames need --profile high: use that, or leave out --gof-kind"};
   }
   if (s.target.kind == Target::kLossless) {
@@ -127,7 +127,7 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
           "lossless coding needs --profile high (version 1.2, in preparation): use that, or "
           "leave out --lossless"};
     }
-    if (s.kinds != KindChoice::kAuto && s.kinds != KindChoice::kFrames) {
+    if (s.kinds != KindChoice::kAuto && s.kinds != KindChoice::kInter) {
       return InputError{
           "only GOFs of frames are lossless: use --gof-kind frames, or leave out --gof-kind or "
           "--lossless"};
@@ -135,8 +135,8 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
   }
   if (auto error = check_low_delay(s)) return error;
   const KindChoice kinds = s.usable_kinds();
-  const bool has_bones = kinds == KindChoice::kAuto || kinds == KindChoice::kBones;
-  if (kinds == KindChoice::kFrames && s.components > 0) {
+  const bool has_bones = kinds == KindChoice::kAuto || kinds == KindChoice::kSkinned;
+  if (kinds == KindChoice::kInter && s.components > 0) {
     return InputError{"--components has no effect on GOFs of frames: leave it out"};
   }
   if (!has_bones && s.main != MainTools{}) {
@@ -145,14 +145,13 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
         "bones: leave them out, or use --gof-kind auto or bones"};
   }
   if (auto error = check_pattern(s)) return error;
-  if (kinds == KindChoice::kAuto &&
-      (s.frames.temporal_layers > 1 || s.frames.layer_groups > 1)) {
+  if (kinds == KindChoice::kAuto && (s.inter.temporal_layers > 1 || s.inter.layer_groups > 1)) {
     return InputError{
         "layers of GOFs of frames need GOFs of this kind alone: use --gof-kind frames"};
   }
-  if (s.frames.layer_groups < 1) return InputError{"there is at least one layer group"};
-  const bool has_frames = kinds == KindChoice::kAuto || kinds == KindChoice::kFrames;
-  if (s.frames != FrameTools{} && !(has_frames && s.profile == Profile::kHigh)) {
+  if (s.inter.layer_groups < 1) return InputError{"there is at least one layer group"};
+  const bool has_frames = kinds == KindChoice::kAuto || kinds == KindChoice::kInter;
+  if (s.inter != InterTools{} && !(has_frames && s.profile == Profile::kHigh)) {
     return InputError{
         "--frame-pattern, --frame-weights, --patches and, except for Baseline, --partition "
         "need "

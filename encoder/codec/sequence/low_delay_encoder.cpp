@@ -9,7 +9,7 @@
 #include "common/parallel/for_each.h"
 #include "encoder/codec/kinds/inter/earlier_frames.h"
 #include "encoder/codec/kinds/inter/first_frame.h"
-#include "encoder/codec/kinds/inter/frame_settings.h"
+#include "encoder/codec/kinds/inter/inter_settings.h"
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/sequence/check_frames.h"
 #include "encoder/codec/sequence/choices/grid_choice.h"
@@ -17,7 +17,7 @@
 #include "encoder/codec/sequence/format_header.h"
 #include "encoder/codec/sequence/memory_need.h"
 #include "encoder/codec/sequence/span_buffer.h"
-#include "encoder/codec/write/write_frame_gof.h"
+#include "encoder/codec/write/write_inter_gof.h"
 
 namespace rlpc {
 namespace {
@@ -73,7 +73,7 @@ std::optional<InputError> LowDelayEncoder::begin_stream(std::span<const float> x
   return std::nullopt;
 }
 
-std::uint32_t LowDelayEncoder::frames_of_gof() const {
+std::uint32_t LowDelayEncoder::frames_in_gof() const {
   const std::uint32_t left = coding_->header().num_frames - num_added_;
   const std::uint32_t longest = std::min(longest_gof(settings_, format_.num_vertices), left);
   // GOFs of about the same length, if the number of frames is known.
@@ -99,7 +99,7 @@ double LowDelayEncoder::step_for(double rms_spread) const {
   if (target.kind == Target::kMaxError) {
     // Coordinates are wrong by half a step, and by half a grid step where they are rounded.
     const double of_coordinate = target.value * per_unit / std::sqrt(3.0);
-    return 2.0 * (of_coordinate - 0.5) - 1.0 / kExactFrameStep;
+    return 2.0 * (of_coordinate - 0.5) - 1.0 / kExactInterStep;
   }
   const double ratio = error_ratio_ > 0.0 ? error_ratio_ : kFirstErrorRatio;
   return kAim * target.value / 100.0 * rms_spread * per_unit / ratio;
@@ -110,7 +110,7 @@ std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz)
   frame.add(xyz, {});
   const auto extent = measure_extent(frame);
   if (!extent) return extent.error();
-  const CodedMesh& layers = (*meshes_)[Prediction::kLayers];
+  const OrderedMesh& layers = (*meshes_)[Prediction::kLayers];
   // That of all frames so far, which the KG error is relative to; at first, that of this one.
   double spread = extent->rms_spread;
   if (num_added_ > 0) {
@@ -119,27 +119,27 @@ std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz)
       spread = 100.0 * so_far.rms_error / (std::sqrt(3.0) * so_far.kg_error_percent);
     }
   }
-  step_ = std::max(step_for(spread), 1.0 / kExactFrameStep);
+  step_ = std::max(step_for(spread), 1.0 / kExactInterStep);
   gof_ = std::make_unique<Gof>();
   gof_->settings =
       choose_frame_settings(coding_->header(), settings_, layers,
-                            settings_.frames.pattern.value_or(FramePattern{}), step_);
+                            settings_.inter.pattern.value_or(FramePattern{}), step_);
   gof_->settings.max_earlier_distance = 1;
   if (auto error = divide(xyz)) return error;
   if (auto error = code_first(xyz, layers)) return error;
-  gof_->announced = frames_of_gof();
+  gof_->announced = frames_in_gof();
   gof_->coding.emplace(layers, gof_->settings, coding_->header(), gof_->announced, UnitLimits{},
                        settings_.target.kind == Target::kMaxError);
-  const GofHeader header{GofKind::kFrames, num_added_, gof_->announced};
+  const GofHeader header{GofKind::kInter, num_added_, gof_->announced};
   const Bytes unit = write_unit(
-      UnitType::kGof, write_frame_gof_unit(header, gof_->settings, layers.topology()));
+      UnitType::kGof, write_inter_gof_unit(header, gof_->settings, layers.topology()));
   stream_->begin_gof(unit, keep_);
   return std::nullopt;
 }
 
 // Patches, if they are wanted, are made from the first frame: no motion is known yet.
 std::optional<InputError> LowDelayEncoder::divide(std::span<const float> xyz) {
-  const std::uint32_t count = settings_.frames.patches.value_or(0);
+  const std::uint32_t count = settings_.inter.patches.value_or(0);
   if (count == 0) return std::nullopt;
   SpanBuffer buffer(format_.num_vertices, 1);
   buffer.add(xyz, {});
@@ -151,7 +151,7 @@ std::optional<InputError> LowDelayEncoder::divide(std::span<const float> xyz) {
 }
 
 std::optional<InputError> LowDelayEncoder::code_first(std::span<const float> xyz,
-                                                      const CodedMesh& layers) {
+                                                      const OrderedMesh& layers) {
   if (settings_.target.kind == Target::kMaxError) return std::nullopt;  // axes may add a little
   SpanBuffer buffer(format_.num_vertices, 1);
   buffer.add(xyz, {});
@@ -170,7 +170,7 @@ std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz
   const auto frame = coding_->read_frames(buffer, {0, 1, 1});
   if (!frame) return frame.error();
   std::vector<std::int32_t> positions(xyz.size());
-  std::vector<EncodedGof::Unit> units;
+  std::vector<EncodedSpan::Unit> units;
   if (are_equal_on_grid(frame->xyz, gof_->before)) {
     units = gof_->coding->repeat(1, positions);
   } else if (gof_->first) {

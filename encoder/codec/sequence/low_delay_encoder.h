@@ -7,12 +7,12 @@
 #include <span>
 #include <vector>
 
-#include "common/codec/kinds/inter/frame_gof.h"
-#include "common/codec/mesh/coded_meshes.h"
-#include "encoder/codec/kinds/inter/frame_coding.h"
+#include "common/codec/kinds/inter/inter_gof.h"
+#include "common/codec/mesh/ordered_meshes.h"
+#include "encoder/codec/kinds/inter/closed_loop.h"
 #include "encoder/codec/rest/rest_coding.h"
 #include "encoder/codec/sequence/attribute_stage.h"
-#include "encoder/codec/sequence/frame_coder.h"
+#include "encoder/codec/sequence/frame_backend.h"
 #include "encoder/codec/sequence/sequence_coding.h"
 #include "encoder/codec/sequence/stream_assembly.h"
 #include "encoder/codec/sequence/verified_output.h"
@@ -21,7 +21,7 @@ namespace rlpc {
 
 // There is no search: the step of a GOF follows from the target, and from the ratio of error to
 // step so far.
-class LowDelayEncoder final : public FrameCoder {
+class LowDelayEncoder final : public FrameBackend {
  public:
   LowDelayEncoder(FrameFormat format, EncoderSettings settings, ByteSink sink);
 
@@ -34,26 +34,26 @@ class LowDelayEncoder final : public FrameCoder {
  private:
   // The GOF in progress.
   struct Gof {
-    FrameSettings settings;
-    std::optional<FrameCoding> coding;  // refers to the settings
-    std::uint32_t announced = 0;        // frames
+    InterSettings settings;
+    std::optional<ClosedLoop> coding;  // refers to the settings
+    std::uint32_t announced = 0;       // frames
     std::uint32_t coded = 0;
     std::vector<double> before;  // the frame before, grid units
     // The first frame until it is coded, if it has an order of its own.
-    std::shared_ptr<const CodedRest> first;
+    std::shared_ptr<const RestEncoding> first;
   };
 
   std::optional<InputError> begin_stream(std::span<const float> xyz);
   std::optional<InputError> begin_gof(std::span<const float> xyz);
   std::optional<InputError> divide(std::span<const float> xyz);
-  std::optional<InputError> code_first(std::span<const float> xyz, const CodedMesh& layers);
+  std::optional<InputError> code_first(std::span<const float> xyz, const OrderedMesh& layers);
   std::optional<InputError> code_frame(std::span<const float> xyz,
                                        std::span<const double> exact);
   void end_gof();
   std::optional<InputError> verify();
   Target target_for_floats() const;
   double step_for(double rms_spread) const;
-  std::uint32_t frames_of_gof() const;
+  std::uint32_t frames_in_gof() const;
   InputError fail(InputError error) {
     failure_ = error;
     return error;
@@ -66,7 +66,7 @@ class LowDelayEncoder final : public FrameCoder {
   ByteSink keep_;  // adds bytes to it
   std::uint32_t num_threads_ = 1;
   std::optional<SequenceCoding> coding_;
-  std::optional<CodedMeshes> meshes_;
+  std::optional<OrderedMeshes> meshes_;
   std::optional<StreamAssembly> stream_;  // from the first frame on
   std::optional<AttributeStage> attributes_;
   std::unique_ptr<Gof> gof_;

@@ -37,7 +37,7 @@ std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHea
   constexpr std::uint64_t kOfFilter = 2100;  // fixed: memory
   const KindChoice kinds = settings.usable_kinds();
   if (settings.profile != Profile::kHigh ||
-      (kinds != KindChoice::kAuto && kinds != KindChoice::kFrames)) {
+      (kinds != KindChoice::kAuto && kinds != KindChoice::kInter)) {
     return 0;
   }
   std::size_t choices = 1;
@@ -47,7 +47,7 @@ std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHea
     choices = std::max(patterns.size(), choices_of_patches(patterns, patches).size());
   }
   return kOfFrame * num_frames +
-         choices * (kDecoded * num_frames + kOfFilter * settings.frames.temporal_layers);
+         choices * (kDecoded * num_frames + kOfFilter * settings.inter.temporal_layers);
 }
 
 struct MemoryNeed {

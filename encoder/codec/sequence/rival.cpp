@@ -24,7 +24,7 @@ double bytes_of(const BatchTrial& trial, const Frames& frames) {
   };
   double bytes = 0.0;
   std::uint32_t first = 0;
-  for (const CodedGof& span : trial.gofs) {
+  for (const SpanResult& span : trial.spans) {
     const std::uint32_t of_span = first;
     double of_models = 0.0;
     for (const GofBytes& gof : span.gofs) {
@@ -70,7 +70,7 @@ bool Rival::has_high_rank() const {
   // fixed: As where GOFs of frames are tried (kManyTrajectories); some fewer, as not all that
   // are expected are coded.
   constexpr double kMany = 0.2;
-  return std::any_of(best_.gofs.begin(), best_.gofs.end(), [&](const CodedGof& span) {
+  return std::any_of(best_.spans.begin(), best_.spans.end(), [&](const SpanResult& span) {
     std::uint32_t num_frames = 0;
     for (const GofBytes& gof : span.gofs) num_frames += gof.num_frames;
     const std::uint32_t most = std::min(best_.metrics.num_vertices, 3 * num_frames);

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "encoder/codec/sequence/gof_batch.h"
+#include "encoder/codec/sequence/span_batch.h"
 #include "encoder/codec/settings.h"
 
 namespace rlpc {

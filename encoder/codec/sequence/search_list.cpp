@@ -30,7 +30,7 @@ std::vector<EncoderSettings> searches_of_profile(const EncoderSettings& settings
 bool is_free(const EncoderSettings& settings) {
   return settings.target.has_search() && settings.kinds == KindChoice::kAuto &&
          settings.components == 0 && settings.main == MainTools{} &&
-         settings.frames == FrameTools{};
+         settings.inter == InterTools{};
 }
 
 }  // namespace

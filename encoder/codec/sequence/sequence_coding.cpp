@@ -10,7 +10,7 @@
 #include "encoder/codec/kinds/cluster/cluster_gof_kind.h"
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/sequence/choices/gof_kinds.h"
-#include "encoder/codec/spans/gof_kind_search.h"
+#include "encoder/codec/spans/kind_search.h"
 
 namespace rlpc {
 
@@ -43,11 +43,11 @@ SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettin
       kinds_(make_gof_kinds(mesh_, settings_)),
       last_resort_(make_last_resort(mesh_, settings_)) {}
 
-InputResult<GofFrames> SequenceCoding::read_frames(FrameSource& source,
-                                                   const GofSpan& span) const {
+InputResult<SpanFrames> SequenceCoding::read_frames(FrameSource& source,
+                                                    const FrameRange& span) const {
   const std::uint32_t n = header_.num_vertices;
-  GofFrames frames{n, span.count, std::vector<double>(std::size_t{n} * span.count * 3),
-                   span.first, span.num_gofs};
+  SpanFrames frames{n, span.count, std::vector<double>(std::size_t{n} * span.count * 3),
+                    span.first, span.num_gofs};
   std::vector<float> input(std::size_t{n} * 3);
   const double per_step = exact_exp2(-header_.grid.log2_step);
   double* out = frames.xyz.data();
@@ -79,16 +79,16 @@ InputResult<std::vector<DecodedFrame>> SequenceCoding::nearest_frames(
   return nearest;
 }
 
-std::unique_ptr<GofCoder> SequenceCoding::make_coder(const GofFrames& frames,
-                                                     bool is_last_resort) const {
+std::unique_ptr<SpanCoder> SequenceCoding::make_coder(const SpanFrames& frames,
+                                                      bool is_last_resort) const {
   if (is_last_resort) return last_resort_->make_coder(frames);
   if (kinds_.size() == 1) return kinds_.front()->make_coder(frames);
-  return std::make_unique<GofKindSearch>(kinds_, frames, settings_.preset);
+  return std::make_unique<KindSearch>(kinds_, frames, settings_.preset);
 }
 
-std::optional<EncodedGof> SequenceCoding::encode_with(const KeptModel& model,
-                                                      const GofFrames& frames, double step,
-                                                      double most) const {
+std::optional<EncodedSpan> SequenceCoding::encode_with(const KeptModel& model,
+                                                       const SpanFrames& frames, double step,
+                                                       double most) const {
   for (const auto& kind : kinds_) {
     if (auto encoded = kind->encode_with(model, frames, step, most)) return encoded;
   }
@@ -98,7 +98,7 @@ std::optional<EncodedGof> SequenceCoding::encode_with(const KeptModel& model,
 // Measures `some` frames of a span; `before`: the original of the frame before them, empty if
 // there is none.
 InputResult<std::vector<SequenceCoding::MeasuredFrame>> SequenceCoding::measure_frames(
-    const SharedSource& source, const GofSpan& span, const GofSpan& some,
+    const SharedSource& source, const FrameRange& span, const FrameRange& some,
     const DecodeFrame& decode, std::span<const double> before) const {
   const std::size_t values = std::size_t{header_.num_vertices} * 3;
   std::vector<MeasuredFrame> frames(some.count,
@@ -122,7 +122,7 @@ InputResult<std::vector<SequenceCoding::MeasuredFrame>> SequenceCoding::measure_
 }
 
 InputResult<std::vector<Bytes>> SequenceCoding::measure(const SharedSource& source,
-                                                        const GofSpan& span,
+                                                        const FrameRange& span,
                                                         const DecodeFrame& decode,
                                                         MetricsAccumulator& metrics) const {
   constexpr std::uint32_t kTogether = 16;  // fixed: memory
@@ -132,10 +132,10 @@ InputResult<std::vector<Bytes>> SequenceCoding::measure(const SharedSource& sour
     if (auto error = source.read_frame(span.first - 1, before)) return *error;
   }
   std::vector<Bytes> hash_units;
-  for (const GofSpan& gof : equal_spans(span.count, span.num_gofs)) {
+  for (const FrameRange& gof : equal_ranges(span.count, span.num_gofs)) {
     std::vector<std::uint32_t> crc;
     for (std::uint32_t done = 0; done < gof.count; done += kTogether) {
-      const GofSpan some{gof.first + done, std::min(kTogether, gof.count - done)};
+      const FrameRange some{gof.first + done, std::min(kTogether, gof.count - done)};
       auto frames = measure_frames(source, span, some, decode, before);
       if (!frames) return frames.error();
       for (const MeasuredFrame& frame : *frames) {
@@ -167,7 +167,7 @@ void SequenceCoding::to_input(std::span<const std::int32_t> positions,
   }
 }
 
-std::vector<GofBytes> write_gof_units(const EncodedGof& encoded, const GofSpan& span,
+std::vector<GofBytes> write_gof_units(const EncodedSpan& encoded, const FrameRange& span,
                                       bool is_open_ended) {
   std::vector<GofBytes> gofs;
   Bytes model;
@@ -183,7 +183,7 @@ std::vector<GofBytes> write_gof_units(const EncodedGof& encoded, const GofSpan& 
     of_layer.resize(std::max<std::size_t>(of_layer.size(), unit.temporal_layer_idx));
     of_layer[unit.temporal_layer_idx - 1] += bytes.size();
   }
-  const std::vector<GofSpan> parts = equal_spans(span.count, span.num_gofs);
+  const std::vector<FrameRange> parts = equal_ranges(span.count, span.num_gofs);
   for (std::size_t g = 0; g < gofs.size(); ++g) gofs[g].num_frames = parts[g].count;
   return gofs;
 }

@@ -16,9 +16,9 @@
 #include "encoder/codec/sequence/choices/gof_cuts.h"
 #include "encoder/codec/sequence/stream_assembly.h"
 #include "encoder/codec/settings.h"
-#include "encoder/codec/spans/gof_coder.h"
-#include "encoder/codec/spans/gof_kind.h"
+#include "encoder/codec/spans/kind_encoder.h"
 #include "encoder/codec/spans/sequence_mesh.h"
+#include "encoder/codec/spans/span_coder.h"
 #include "encoder/codec/write/write_connectivity.h"
 #include "encoder/meshes/frame_source.h"
 
@@ -58,22 +58,22 @@ class SequenceCoding {
       FrameSource& source, std::span<const std::uint32_t> numbers) const;
   // The frames of a span, in decoded vertex order and grid units; span: frames of the source.
   // Errors: those of the source.
-  InputResult<GofFrames> read_frames(FrameSource& source, const GofSpan& span) const;
+  InputResult<SpanFrames> read_frames(FrameSource& source, const FrameRange& span) const;
   // Whether there is a further kind of GOF, for targets that the compared kinds miss.
   bool has_last_resort() const { return last_resort_ != nullptr; }
   // Keeps a reference to the frames. is_last_resort: use only that further kind.
-  std::unique_ptr<GofCoder> make_coder(const GofFrames& frames, bool is_last_resort) const;
+  std::unique_ptr<SpanCoder> make_coder(const SpanFrames& frames, bool is_last_resort) const;
   // Whether spans can use skinned models of earlier ones.
   bool has_models() const { return settings_.profile == Profile::kHigh; }
-  // GofEncoder::encode_with(), by the kind that has skinned models.
-  std::optional<EncodedGof> encode_with(const KeptModel& model, const GofFrames& frames,
-                                        double step, double most) const;
+  // KindEncoder::encode_with(), by the kind that has skinned models.
+  std::optional<EncodedSpan> encode_with(const KeptModel& model, const SpanFrames& frames,
+                                         double step, double most) const;
   // Whether the target is the largest error.
   bool has_largest_error() const { return settings_.target.kind == Target::kMaxError; }
   // Decodes the span as a decoder would and adds its errors against the source to the metrics;
   // if these have no frames so far, they follow the frame before the span. Returns the hash
   // unit of each GOF; empty if hashes are off. Errors: those of the source.
-  InputResult<std::vector<Bytes>> measure(const SharedSource& source, const GofSpan& span,
+  InputResult<std::vector<Bytes>> measure(const SharedSource& source, const FrameRange& span,
                                           const DecodeFrame& decode,
                                           MetricsAccumulator& metrics) const;
 
@@ -84,8 +84,8 @@ class SequenceCoding {
     MetricsAccumulator metrics;
   };
   InputResult<std::vector<MeasuredFrame>> measure_frames(const SharedSource& source,
-                                                         const GofSpan& span,
-                                                         const GofSpan& some,
+                                                         const FrameRange& span,
+                                                         const FrameRange& some,
                                                          const DecodeFrame& decode,
                                                          std::span<const double> before) const;
   void to_input(std::span<const std::int32_t> positions, std::span<float> decoded) const;
@@ -96,12 +96,12 @@ class SequenceCoding {
   Topology topology_;
   std::vector<Triangle> input_triangles_;  // SequenceMesh::input_triangles
   SequenceMesh mesh_;
-  GofKinds kinds_;
-  std::unique_ptr<GofEncoder> last_resort_;
+  KindEncoders kinds_;
+  std::unique_ptr<KindEncoder> last_resort_;
 };
 
 // The units of the GOFs of a coded span as bytes of a stream, without hashes.
-std::vector<GofBytes> write_gof_units(const EncodedGof& encoded, const GofSpan& span,
+std::vector<GofBytes> write_gof_units(const EncodedSpan& encoded, const FrameRange& span,
                                       bool is_open_ended);
 
 }  // namespace rlpc

@@ -57,7 +57,7 @@ GivingUp giving_up(const SequenceHeader& header) {
 // The decoded frames that attributes refer to.
 std::vector<DecodedFrame> kept_frames(const BatchTrial& trial) {
   std::vector<DecodedFrame> frames;
-  for (const CodedGof& span : trial.gofs) {
+  for (const SpanResult& span : trial.spans) {
     frames.insert(frames.end(), span.kept.begin(), span.kept.end());
   }
   return frames;
@@ -84,7 +84,7 @@ std::optional<InputError> SequenceEncoder::prepare() {
   threads_.emplace(num_threads_);
   const ThreadPool::Use use(*threads_);
   if (auto error = cut_gofs(header)) return error;
-  if (auto error = choose_level(header, longest_gof_of(spans_))) return error;
+  if (auto error = choose_level(header, longest_gof(spans_))) return error;
   coding_.emplace(header, settings_, source_.triangles());
   stream_.emplace(header, settings_, coding_->connectivity());
   attributes_.emplace(source_.attributes(), source_.triangles(), settings_,
@@ -170,7 +170,7 @@ std::optional<InputError> SequenceEncoder::allot_memory(const SequenceHeader& he
 std::optional<InputError> SequenceEncoder::cut_gofs(const SequenceHeader& header) {
   const std::uint32_t longest = longest_span_of(header);
   if (settings_.profile == Profile::kBaseline || settings_.preset == Preset::kFast ||
-      settings_.usable_kinds() == KindChoice::kFrames) {
+      settings_.usable_kinds() == KindChoice::kInter) {
     spans_ = equal_gofs(header.num_frames, longest);
     divide_spans(spans_, longest_gof_);
     return std::nullopt;
@@ -224,8 +224,8 @@ InputResult<bool> SequenceEncoder::is_hopeless(const Rival& rival) {
   const SequenceCoding coding(header, fast, source_.triangles());
   const std::size_t count = std::max<std::size_t>(spans_.size() / kPart, 1);
   for (std::size_t i = 0; i < count; ++i) {
-    const GofSpan& span = spans_[(2 * i + 1) * spans_.size() / (2 * count)];
-    GofBatch batch(coding, source_, {span}, {});
+    const FrameRange& span = spans_[(2 * i + 1) * spans_.size() / (2 * count)];
+    SpanBatch batch(coding, source_, {span}, {});
     const auto trial = first_trial(task(fast), batch);
     if (!trial) return trial.error();
     const double far = rival.has_high_rank() ? kFarHigh : kFarLow;
@@ -235,11 +235,11 @@ InputResult<bool> SequenceEncoder::is_hopeless(const Rival& rival) {
 }
 
 InputResult<TargetResult> SequenceEncoder::search(const Rival* rival) {
-  GofBatch batch(
+  SpanBatch batch(
       *coding_, source_, spans_,
       {.keep_analyses = keeps_analyses_,
        .kept_frames = attributes_->frames(),
-       .together = spans_together(coding_->header(), longest_gof_of(spans_), num_threads_)});
+       .together = spans_together(coding_->header(), longest_gof(spans_), num_threads_)});
   TargetTask whole = task(settings_);
   whole.rival = rival;
   auto best = reach_target(whole, batch);
@@ -254,8 +254,8 @@ double SequenceEncoder::fixed_bits() const {
   double bits = 8.0 * static_cast<double>(stream_->overhead_bytes()) + reserved_bits_;
   if (settings_.target.kind != Target::kBpvf) return bits;
   std::vector<GofEntry> largest;
-  for (const GofSpan& span : spans_) {
-    for (const GofSpan& gof : equal_spans(span.count, span.num_gofs)) {
+  for (const FrameRange& span : spans_) {
+    for (const FrameRange& gof : equal_ranges(span.count, span.num_gofs)) {
       const double of_gof =
           settings_.target.value * coding_->header().num_vertices * gof.count / 8.0;
       largest.push_back({gof.count, static_cast<std::uint64_t>(std::min(of_gof, kMostBytes))});
@@ -270,7 +270,7 @@ std::uint64_t SequenceEncoder::total_bytes(const TargetResult& result) {
   const ByteSink discard = [](std::span<const std::uint8_t>) { return true; };
   StreamAssembly stream = *stream_;
   stream.write_lead(coding_->header(), discard);
-  for (const CodedGof& span : result.trial.gofs) {
+  for (const SpanResult& span : result.trial.spans) {
     for (const GofBytes& gof : span.gofs) stream.write_gof(gof, discard);
   }
   stream.write_end(discard);
@@ -324,8 +324,8 @@ InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSi
   const ThreadPool::Use use(*threads_);
   SequenceHeader header = coding_->header();
   EncodeReport report;
-  for (const CodedGof& gof : best.trial.gofs) {
-    if (auto error = raise_level(header.level_idc, gof.needs, gof.gofs.front().num_frames)) {
+  for (const SpanResult& span : best.trial.spans) {
+    if (auto error = raise_level(header.level_idc, span.needs, span.gofs.front().num_frames)) {
       return *error;
     }
     report.clusters += gof.clusters;
@@ -342,7 +342,7 @@ InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSi
   };
   std::uint64_t end_of_first_gof = 0;
   stream_->write_lead(header, keep);
-  for (CodedGof& span : best.trial.gofs) {
+  for (SpanResult& span : best.trial.spans) {
     for (GofBytes& gof : span.gofs) {
       stream_->write_gof(std::exchange(gof, {}), keep);
       if (end_of_first_gof == 0) end_of_first_gof = stream->size();
@@ -379,7 +379,7 @@ std::optional<InputError> SequenceEncoder::measure_cuts(const BatchTrial& trial,
   for (std::uint32_t layers = 1; layers < settings_.temporal_layers(); ++layers) {
     MetricsAccumulator metrics(header.num_vertices, MetricsAccumulator::kTotals);
     for (std::size_t g = 0; g < spans_.size(); ++g) {
-      const DecodeFrame frame = trial.gofs[g].cut(static_cast<int>(layers));
+      const DecodeFrame frame = trial.spans[g].cut(static_cast<int>(layers));
       const auto measured = coding_->measure({source_, reading}, spans_[g], frame, metrics);
       if (!measured) return measured.error();
     }
@@ -391,7 +391,7 @@ std::optional<InputError> SequenceEncoder::measure_cuts(const BatchTrial& trial,
 
 std::uint64_t SequenceEncoder::bytes_of(const TargetResult& result) const {
   std::vector<GofEntry> gofs;
-  for (const CodedGof& span : result.trial.gofs) {
+  for (const SpanResult& span : result.trial.spans) {
     for (const GofBytes& gof : span.gofs) gofs.push_back({gof.num_frames, gof.size()});
   }
   return stream_->overhead_bytes() + result.trial.gof_bytes +

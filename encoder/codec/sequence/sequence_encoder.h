@@ -11,8 +11,8 @@
 #include "encoder/codec/report.h"
 #include "encoder/codec/sequence/attribute_stage.h"
 #include "encoder/codec/sequence/choices/grid_choice.h"
-#include "encoder/codec/sequence/gof_batch.h"
 #include "encoder/codec/sequence/sequence_coding.h"
+#include "encoder/codec/sequence/span_batch.h"
 #include "encoder/codec/sequence/stream_assembly.h"
 #include "encoder/codec/sequence/target_loop.h"
 #include "encoder/codec/settings.h"
@@ -67,7 +67,7 @@ class SequenceEncoder {
   std::optional<ThreadPool> threads_;  // used in find() and write()
   Extent extent_;
   std::uint32_t longest_gof_ = 0;
-  std::vector<GofSpan> spans_;
+  std::vector<FrameRange> spans_;
   std::optional<SequenceCoding> coding_;
   std::optional<StreamAssembly> stream_;
   std::optional<AttributeStage> attributes_;

@@ -29,16 +29,16 @@ void SpanEncoder::make_spans(const SequenceHeader& header) {
   if (format_.max_held_frames > 0) {
     longest = std::min(longest, std::max(of_gof, format_.max_held_frames));
   }
-  spans_ = is_open_ended() ? std::vector<GofSpan>{{0, longest, 1}}
+  spans_ = is_open_ended() ? std::vector<FrameRange>{{0, longest, 1}}
                            : equal_gofs(header.num_frames, longest);
   divide_spans(spans_, of_gof);
 }
 
-GofSpan SpanEncoder::current() const {
+FrameRange SpanEncoder::current() const {
   if (!is_open_ended()) return spans_[coded_.spans];
   // All have the same length but the last.
   const std::uint32_t held = buffer_ ? buffer_->num_frames() : spans_.front().count;
-  std::vector<GofSpan> span{{num_added_ - num_held_, held, 1}};
+  std::vector<FrameRange> span{{num_added_ - num_held_, held, 1}};
   divide_spans(span, longest_gof(settings_, format_.num_vertices));
   return span.front();
 }
@@ -47,11 +47,11 @@ std::optional<InputError> SpanEncoder::prepare() {
   SequenceHeader header = header_of(format_, settings_);
   make_spans(header);
   std::uint32_t longest = 0;
-  for (const GofSpan& span : spans_) longest = std::max(longest, span.count);
+  for (const FrameRange& span : spans_) longest = std::max(longest, span.count);
   const auto threads = check_memory(settings_, header, longest, 0, kHeldFrames);
   if (!threads) return threads.error();
   num_threads_ = *threads;
-  longest_gof_ = longest_gof_of(spans_);
+  longest_gof_ = longest_gof(spans_);
   if (auto error = choose_level(header, longest_gof_, format_.least_level)) return error;
   // The level must allow later GOFs to have all clusters, bones and components of the settings.
   if (auto error = raise_level(header.level_idc, LevelNeeds(settings_), longest_gof_)) {
@@ -73,14 +73,14 @@ double SpanEncoder::fixed_bits_per_frame() const {
   std::uint64_t bytes = stream_->overhead_bytes();
   if (is_open_ended()) {
     constexpr std::uint64_t kBytesOfEntry = 8;  // fixed: of a GOF in an index, about
-    const GofSpan span = current();
+    const FrameRange span = current();
     const std::uint64_t lead = coded_.spans == 0 ? bytes : 0;
     return 8.0 * static_cast<double>(lead + kBytesOfEntry * span.num_gofs) / span.count;
   }
   if (settings_.target.kind == Target::kBpvf) {
     std::vector<GofEntry> largest;
-    for (const GofSpan& span : spans_) {
-      for (const GofSpan& gof : equal_spans(span.count, span.num_gofs)) {
+    for (const FrameRange& span : spans_) {
+      for (const FrameRange& gof : equal_ranges(span.count, span.num_gofs)) {
         const double bits = settings_.target.value * format_.num_vertices * gof.count;
         largest.push_back(
             {gof.count, static_cast<std::uint64_t>(std::min(bits / 8.0, kMostBytes))});
@@ -118,14 +118,14 @@ SequenceHeader SpanEncoder::header_for(double finest) const {
   return header;
 }
 
-InputResult<TargetResult> SpanEncoder::search(const GofSpan& span, double rms_spread) {
-  GofBatch batch(*coding_, *buffer_, {{0, span.count, span.num_gofs}},
-                 {.first_frame = span.first,
-                  .keep_decoded = true,
-                  .kept_frames = attributes_->frames(),
-                  .model = model_,
-                  .has_followers = is_open_ended() || coded_.spans + 1 < spans_.size(),
-                  .metrics = MetricsAccumulator::kTotals});
+InputResult<TargetResult> SpanEncoder::search(const FrameRange& span, double rms_spread) {
+  SpanBatch batch(*coding_, *buffer_, {{0, span.count, span.num_gofs}},
+                  {.first_frame = span.first,
+                   .keep_decoded = true,
+                   .kept_frames = attributes_->frames(),
+                   .model = model_,
+                   .has_followers = is_open_ended() || coded_.spans + 1 < spans_.size(),
+                   .metrics = MetricsAccumulator::kTotals});
   auto best = reach_target({.settings = settings_,
                             .header = coding_->header(),
                             .rms_spread = rms_spread,
@@ -139,7 +139,7 @@ InputResult<TargetResult> SpanEncoder::search(const GofSpan& span, double rms_sp
 
 // Searches the first span, which determines the grid. If the target is a rate, the resulting
 // error may require a finer grid and a second search.
-InputResult<TargetResult> SpanEncoder::search_first(const GofSpan& span, double rms_spread) {
+InputResult<TargetResult> SpanEncoder::search_first(const FrameRange& span, double rms_spread) {
   use_header(header_for(finest_error(settings_.target, rms_spread)));
   if (attributes_->has_sets() && settings_.target.kind == Target::kBpvf) {
     // Their size is part of the rate.
@@ -160,7 +160,7 @@ InputResult<TargetResult> SpanEncoder::search_first(const GofSpan& span, double 
 
 // Sets the level with a reserve at the first span; error if a later one needs a higher level.
 std::optional<InputError> SpanEncoder::keep_to_level(const LevelNeeds& needs) {
-  const GofSpan span = current();
+  const FrameRange span = current();
   SequenceHeader header = coding_->header();
   const std::uint32_t level_idc = header.level_idc;
   const bool first = coded_.spans == 0;
@@ -178,13 +178,13 @@ std::optional<InputError> SpanEncoder::keep_to_level(const LevelNeeds& needs) {
 
 std::optional<InputError> SpanEncoder::encode_span() {
   const Threads threads(num_threads_);
-  const GofSpan span = current();
+  const FrameRange span = current();
   const auto extent = measure_extent(*buffer_);
   if (!extent) return extent.error();
   const auto best = coded_.spans == 0 ? search_first(span, extent->rms_spread)
                                       : search(span, extent->rms_spread);
   if (!best) return best.error();
-  const CodedGof& coded = best->trial.gofs.front();
+  const SpanResult& coded = best->trial.spans.front();
   coded_.report.target_met = coded_.report.target_met && best->met;
   coded_.report.clusters += coded.clusters;
   coded_.report.components += coded.components;
@@ -193,7 +193,7 @@ std::optional<InputError> SpanEncoder::encode_span() {
   if (auto error = keep_to_level(coded.needs)) return error;
   std::mutex reading;
   const SharedSource source{*buffer_, reading};
-  const GofSpan frames{0, span.count, span.num_gofs};
+  const FrameRange frames{0, span.count, span.num_gofs};
   const auto hashes = coding_->measure(source, frames, coded.frame, coded_.metrics);
   if (!hashes) return hashes.error();
   for (std::size_t i = 0; i < coded_.cuts.size(); ++i) {
@@ -209,7 +209,7 @@ std::optional<InputError> SpanEncoder::encode_span() {
   return std::nullopt;
 }
 
-std::optional<InputError> SpanEncoder::write(const CodedGof& span) {
+std::optional<InputError> SpanEncoder::write(const SpanResult& span) {
   const ByteSink keep = out_.collector();
   if (coded_.spans == 0) {
     attributes_->encode(span.kept, *stream_);

@@ -11,9 +11,9 @@
 #include "encoder/codec/sequence/attribute_stage.h"
 #include "encoder/codec/sequence/choices/gof_cuts.h"
 #include "encoder/codec/sequence/choices/level_choice.h"
-#include "encoder/codec/sequence/frame_coder.h"
-#include "encoder/codec/sequence/gof_batch.h"
+#include "encoder/codec/sequence/frame_backend.h"
 #include "encoder/codec/sequence/sequence_coding.h"
+#include "encoder/codec/sequence/span_batch.h"
 #include "encoder/codec/sequence/span_buffer.h"
 #include "encoder/codec/sequence/stream_assembly.h"
 #include "encoder/codec/sequence/target_loop.h"
@@ -21,7 +21,7 @@
 
 namespace rlpc {
 
-class SpanEncoder final : public FrameCoder {
+class SpanEncoder final : public FrameBackend {
  public:
   SpanEncoder(FrameFormat format, EncoderSettings settings, ByteSink sink)
       : format_(std::move(format)),
@@ -52,14 +52,14 @@ class SpanEncoder final : public FrameCoder {
   void make_spans(const SequenceHeader& header);
   bool is_open_ended() const { return format_.num_frames == 0; }
   // The span that is being filled or encoded.
-  GofSpan current() const;
+  FrameRange current() const;
   std::optional<InputError> encode_span();
-  std::optional<InputError> write(const CodedGof& span);
+  std::optional<InputError> write(const SpanResult& span);
   void use_header(const SequenceHeader& header);
   // The header with the grid for errors of `finest` (units) and more.
   SequenceHeader header_for(double finest) const;
-  InputResult<TargetResult> search(const GofSpan& span, double rms_spread);
-  InputResult<TargetResult> search_first(const GofSpan& span, double rms_spread);
+  InputResult<TargetResult> search(const FrameRange& span, double rms_spread);
+  InputResult<TargetResult> search_first(const FrameRange& span, double rms_spread);
   std::optional<InputError> keep_to_level(const LevelNeeds& needs);
   double fixed_bits_per_frame() const;
   InputError fail(InputError error) {
@@ -71,7 +71,7 @@ class SpanEncoder final : public FrameCoder {
   EncoderSettings settings_;
   ByteSink sink_;
   VerifiedOutput out_;
-  std::vector<GofSpan> spans_;
+  std::vector<FrameRange> spans_;
   std::optional<SequenceCoding> coding_;
   std::optional<StreamAssembly> stream_;  // from the first span on
   std::optional<AttributeStage> attributes_;

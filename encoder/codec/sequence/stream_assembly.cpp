@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/codec/syntax/stream_format.h"
-#include "encoder/codec/spans/gof_coder.h"
+#include "encoder/codec/spans/span_coder.h"
 #include "encoder/codec/write/write_stream.h"
 
 namespace rlpc {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "encoder/codec/spans/gof_coder.h"
+#include "encoder/codec/spans/span_coder.h"
 
 namespace rlpc {
 namespace {
@@ -27,7 +27,7 @@ double measured(const TargetTask& task, const BatchTrial& trial, std::uint32_t n
 }
 
 // Estimates the KG error at a step from the analyses; empty if there is no estimate.
-TargetSearch::Expected expected_kg(const TargetTask& task, const GofBatch& batch) {
+TargetSearch::Expected expected_kg(const TargetTask& task, const SpanBatch& batch) {
   if (task.settings.target.kind != Target::kKg) return {};
   auto squared_error = batch.expected_error();
   if (!squared_error) return {};
@@ -41,19 +41,19 @@ TargetSearch::Expected expected_kg(const TargetTask& task, const GofBatch& batch
 
 bool fits_level(const TargetTask& task, const BatchTrial& trial) {
   const std::uint32_t level_idc = task.header.level_idc;
-  return std::all_of(trial.gofs.begin(), trial.gofs.end(), [&](const CodedGof& gof) {
+  return std::all_of(trial.spans.begin(), trial.spans.end(), [&](const SpanResult& gof) {
     const auto needed = gof.needs.level_from(level_idc);
     return needed && (!task.keeps_level || *needed == level_idc);
   });
 }
 
-GofBatch::Progress progress_of(const TargetTask& task, std::uint32_t trial) {
+SpanBatch::Progress progress_of(const TargetTask& task, std::uint32_t trial) {
   return [&task, trial](double done) {
     if (task.progress) task.progress(trial, done);
   };
 }
 
-InputResult<TargetSearch> begin_search(const TargetTask& task, GofBatch& batch,
+InputResult<TargetSearch> begin_search(const TargetTask& task, SpanBatch& batch,
                                        std::uint32_t trials) {
   TargetSearch search = search_for(task.settings, task.header, task.rms_spread);
   if (task.settings.profile == Profile::kHigh) search.set_costly();
@@ -71,7 +71,7 @@ InputResult<TargetSearch> begin_search(const TargetTask& task, GofBatch& batch,
 // at equal error, by this factor.
 constexpr double kFarAll = 1.05;
 
-InputResult<TargetResult> search_steps(const TargetTask& task, GofBatch& batch,
+InputResult<TargetResult> search_steps(const TargetTask& task, SpanBatch& batch,
                                        std::uint32_t trials_before) {
   auto begun = begin_search(task, batch, trials_before);
   if (!begun) return begun.error();
@@ -119,11 +119,11 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
                             .made_for = finer,
                             .coarsest = finer * kAnalysisServes};
   const double step_of_error =
-      settings.usable_kinds() == KindChoice::kFrames ? kStepOfFrameError : kStepOfError;
+      settings.usable_kinds() == KindChoice::kInter ? kStepOfFrameError : kStepOfError;
   return {settings.target, rms_spread * steps_per_unit, steps_per_unit, step_of_error, range};
 }
 
-InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch) {
+InputResult<TargetResult> reach_target(const TargetTask& task, SpanBatch& batch) {
   auto best = search_steps(task, batch, 0);
   const auto is_missed = [&] { return best && !best->met && !best->given_up; };
   const auto search_again = [&](const TargetTask& changed) {
@@ -150,7 +150,7 @@ InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch) 
   return best;
 }
 
-InputResult<BatchTrial> first_trial(const TargetTask& task, GofBatch& batch) {
+InputResult<BatchTrial> first_trial(const TargetTask& task, SpanBatch& batch) {
   const auto search = begin_search(task, batch, 0);
   if (!search) return search.error();
   return batch.encode(search->step(), search->analysis_step(), progress_of(task, 1));

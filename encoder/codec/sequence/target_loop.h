@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "encoder/codec/report.h"
-#include "encoder/codec/sequence/gof_batch.h"
 #include "encoder/codec/sequence/rival.h"
+#include "encoder/codec/sequence/span_batch.h"
 #include "encoder/codec/sequence/target/target_search.h"
 #include "encoder/codec/settings.h"
 #include "encoder/meshes/frame_source.h"
@@ -42,9 +42,9 @@ struct TargetResult {
 // Runs the search. If it misses the target, searches again without skinned models of earlier
 // spans; then, for a rate, with what is chosen at the last step; then with the last resort of
 // the batch. Errors: those of the batch.
-InputResult<TargetResult> reach_target(const TargetTask& task, GofBatch& batch);
+InputResult<TargetResult> reach_target(const TargetTask& task, SpanBatch& batch);
 
 // The first encoding of that search. Errors: those of the batch.
-InputResult<BatchTrial> first_trial(const TargetTask& task, GofBatch& batch);
+InputResult<BatchTrial> first_trial(const TargetTask& task, SpanBatch& batch);
 
 }  // namespace rlpc

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "encoder/codec/math/det_math.h"
-#include "encoder/codec/spans/gof_coder.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_coder.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -18,12 +18,12 @@ inline constexpr double kLambda = 0.1155;  // fixed: ln 2 / 6
 // The squared error, in squared grid steps, that one bit is worth at a quantiser step.
 inline double lambda(double step) { return kLambda * step * step; }
 
-inline double bits_of(std::span<const EncodedGof::Unit> units) {
+inline double bits_of(std::span<const EncodedSpan::Unit> units) {
   double bits = 0.0;
   for (const auto& unit : units) bits += 8.0 * static_cast<double>(unit.payload.size());
   return bits;
 }
-inline double bits_of(const EncodedGof& encoded) { return bits_of(encoded.units); }
+inline double bits_of(const EncodedSpan& encoded) { return bits_of(encoded.units); }
 
 // tuned: Frames from which the error of a candidate is taken. It hardly differs from frame to
 // frame, unless each is predicted from others, and decoding takes time.
@@ -31,7 +31,8 @@ inline constexpr std::uint32_t kErrorFrames = 24;
 
 // D + lambda R of an encoded GOF: squared error of its decoded frames, from a sample unless it
 // is known, and bits of its units.
-inline double lagrangian_cost(const EncodedGof& encoded, const GofFrames& frames, double step) {
+inline double lagrangian_cost(const EncodedSpan& encoded, const SpanFrames& frames,
+                              double step) {
   const double error = encoded.squared_error
                            ? *encoded.squared_error
                            : squared_error(frames, encoded.frame, kErrorFrames);

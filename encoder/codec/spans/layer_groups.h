@@ -6,14 +6,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 
 namespace rlpc {
 
 // The layers of each of at most num_groups groups. The layers before each group have at most an
 // eighth of the vertices of all layers up to its end. A group is smaller if it would not leave
 // enough layers for the requested number of groups.
-inline std::vector<std::uint32_t> layer_group_sizes(const CodedMesh& mesh,
+inline std::vector<std::uint32_t> layer_group_sizes(const OrderedMesh& mesh,
                                                     std::size_t num_groups,
                                                     std::uint32_t requested) {
   const std::uint32_t num_layers = mesh.num_layers();

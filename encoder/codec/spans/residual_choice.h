@@ -10,7 +10,7 @@
 
 #include "common/codec/bits/residual_models.h"
 #include "common/codec/kinds/skinned/slice_models.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "encoder/codec/spans/lagrangian.h"
 #include "encoder/codec/write/bit_cost.h"
 #include "encoder/codec/write/write_residual.h"
@@ -53,7 +53,7 @@ inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expec
 // Copies go on with different vertices of a layer, as of VertexContexts.
 class VertexResidualChoice {
  public:
-  VertexResidualChoice(const CodedMesh& mesh, std::size_t num_factors)
+  VertexResidualChoice(const OrderedMesh& mesh, std::size_t num_factors)
       : contexts_(mesh, num_factors), models_(1) {}
 
   // A residual, with the contexts that it was chosen in.

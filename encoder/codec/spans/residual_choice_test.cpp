@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "encoder/codec/spans/gof_coder.h"
+#include "encoder/codec/spans/span_coder.h"
 
 namespace rlpc {
 namespace {

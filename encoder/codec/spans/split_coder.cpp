@@ -7,8 +7,8 @@
 
 namespace rlpc {
 
-GofFrames frames_of_gof(const GofFrames& frames, const GofSpan& gof) {
-  GofFrames part{frames.num_vertices, gof.count, {}, frames.first_frame + gof.first, 1};
+SpanFrames frames_in_gof(const SpanFrames& frames, const FrameRange& gof) {
+  SpanFrames part{frames.num_vertices, gof.count, {}, frames.first_frame + gof.first, 1};
   part.xyz.assign(frames.at(gof.first, 0),
                   frames.at(gof.first, 0) + std::size_t{3} * frames.num_vertices * gof.count);
   return part;
@@ -17,7 +17,8 @@ GofFrames frames_of_gof(const GofFrames& frames, const GofSpan& gof) {
 namespace {
 
 // The frames of all parts, one after the other.
-DecodeFrame frames_of_all(const std::vector<GofSpan>& gofs, std::vector<DecodeFrame> decoders) {
+DecodeFrame frames_of_all(const std::vector<FrameRange>& gofs,
+                          std::vector<DecodeFrame> decoders) {
   return [gofs, decoders = std::move(decoders)](std::uint32_t f,
                                                 std::span<std::int32_t> positions) {
     std::size_t g = 0;
@@ -28,7 +29,7 @@ DecodeFrame frames_of_all(const std::vector<GofSpan>& gofs, std::vector<DecodeFr
 
 }  // namespace
 
-SplitCoder::SplitCoder(const GofFrames& frames, const MakeCoder& make) : frames_(frames) {
+SplitCoder::SplitCoder(const SpanFrames& frames, const MakeCoder& make) : frames_(frames) {
   for (std::uint32_t g = 0; g < frames.num_gofs; ++g) {
     parts_.push_back(std::make_unique<Part>());
     parts_.back()->coder = make(parts_.back()->frames);
@@ -41,22 +42,22 @@ bool SplitCoder::needs_frames(double step, double analysis_step) const {
   });
 }
 
-EncodedGof SplitCoder::encode(double step, double analysis_step) {
-  const std::vector<GofSpan> gofs = frames_.gofs();
-  std::vector<EncodedGof> encoded_parts(gofs.size());
+EncodedSpan SplitCoder::encode(double step, double analysis_step) {
+  const std::vector<FrameRange> gofs = frames_.gofs();
+  std::vector<EncodedSpan> encoded_parts(gofs.size());
   for_each(gofs.size(), [&](std::size_t g) {
     Part& part = *parts_[g];
     if (part.coder->needs_frames(step, analysis_step)) {
-      part.frames = frames_of_gof(frames_, gofs[g]);
+      part.frames = frames_in_gof(frames_, gofs[g]);
     }
     encoded_parts[g] = part.coder->encode(step, analysis_step);
     part.frames.xyz = {};
   });
-  EncodedGof all;
+  EncodedSpan all;
   all.squared_error = 0.0;
   std::vector<DecodeFrame> decoders;
   std::vector<DecodeCut> cuts;
-  for (EncodedGof& encoded : encoded_parts) {
+  for (EncodedSpan& encoded : encoded_parts) {
     for (auto& unit : encoded.units) all.units.push_back(std::move(unit));
     if (encoded.cut) cuts.push_back(std::move(encoded.cut));
     decoders.push_back(std::move(encoded.frame));

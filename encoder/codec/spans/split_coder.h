@@ -7,34 +7,34 @@
 #include <optional>
 #include <vector>
 
-#include "encoder/codec/spans/gof_coder.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_coder.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
-class SplitCoder : public GofCoder {
+class SplitCoder : public SpanCoder {
  public:
-  using MakeCoder = std::function<std::unique_ptr<GofCoder>(const GofFrames& frames)>;
+  using MakeCoder = std::function<std::unique_ptr<SpanCoder>(const SpanFrames& frames)>;
 
   // make: of the coder of a GOF, which keeps a reference to its frames. Keeps a reference to
   // the frames of the span.
-  SplitCoder(const GofFrames& frames, const MakeCoder& make);
+  SplitCoder(const SpanFrames& frames, const MakeCoder& make);
 
   bool needs_frames(double step, double analysis_step) const override;
-  EncodedGof encode(double step, double analysis_step) override;
+  EncodedSpan encode(double step, double analysis_step) override;
   void release_analysis() override;
 
  private:
   struct Part {
-    GofFrames frames;  // only while it is encoded
-    std::unique_ptr<GofCoder> coder;
+    SpanFrames frames;  // only while it is encoded
+    std::unique_ptr<SpanCoder> coder;
   };
 
-  const GofFrames& frames_;
+  const SpanFrames& frames_;
   std::vector<std::unique_ptr<Part>> parts_;
 };
 
 // The frames of a GOF of a span.
-GofFrames frames_of_gof(const GofFrames& frames, const GofSpan& gof);
+SpanFrames frames_in_gof(const SpanFrames& frames, const FrameRange& gof);
 
 }  // namespace rlpc

@@ -20,17 +20,17 @@ struct Calls {
 };
 
 // Decodes to the frames, rounded, after a unit with the number of its first frame.
-class CopyingCoder : public GofCoder {
+class CopyingCoder : public SpanCoder {
  public:
-  CopyingCoder(const GofFrames& frames, bool reads, Calls& calls)
+  CopyingCoder(const SpanFrames& frames, bool reads, Calls& calls)
       : frames_(frames), reads_(reads), calls_(calls) {}
   bool needs_frames(double step, double /*analysis_step*/) const override {
     return reads_ || step > 5;
   }
-  EncodedGof encode(double step, double /*analysis_step*/) override {
+  EncodedSpan encode(double step, double /*analysis_step*/) override {
     ++calls_.encodings;
     calls_.sizes.push_back(frames_.xyz.size());
-    EncodedGof encoded;
+    EncodedSpan encoded;
     if (!frames_.xyz.empty()) copy_ = frames_;
     encoded.units.push_back(
         {UnitType::kGof, {static_cast<std::uint8_t>(copy_.first_frame), 7}});
@@ -50,29 +50,29 @@ class CopyingCoder : public GofCoder {
   void release_analysis() override { ++calls_.released; }
 
  private:
-  const GofFrames& frames_;
-  GofFrames copy_;
+  const SpanFrames& frames_;
+  SpanFrames copy_;
   bool reads_;
   Calls& calls_;
 };
 
-GofFrames frames_of(std::uint32_t num_frames, std::uint32_t num_gofs) {
-  GofFrames frames{kVertices, num_frames, {}, 40, num_gofs};
+SpanFrames frames_of(std::uint32_t num_frames, std::uint32_t num_gofs) {
+  SpanFrames frames{kVertices, num_frames, {}, 40, num_gofs};
   for (std::uint32_t i = 0; i < 3 * kVertices * num_frames; ++i) frames.xyz.push_back(i);
   return frames;
 }
 
 SplitCoder::MakeCoder copying(Calls& calls, bool reads = true) {
-  return [&calls, reads](const GofFrames& frames) {
+  return [&calls, reads](const SpanFrames& frames) {
     return std::make_unique<CopyingCoder>(frames, reads, calls);
   };
 }
 
 TEST(SplitCoder, EncodesEachGofByItself) {
-  const GofFrames frames = frames_of(8, 3);
+  const SpanFrames frames = frames_of(8, 3);
   Calls calls;
   SplitCoder coder(frames, copying(calls));
-  const EncodedGof all = coder.encode(2, 2);
+  const EncodedSpan all = coder.encode(2, 2);
   ASSERT_EQ(all.units.size(), 6U);
   std::vector<std::uint8_t> firsts;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -85,10 +85,10 @@ TEST(SplitCoder, EncodesEachGofByItself) {
 }
 
 TEST(SplitCoder, DecodesEachFrameByItsGof) {
-  const GofFrames frames = frames_of(8, 3);
+  const SpanFrames frames = frames_of(8, 3);
   Calls calls;
   SplitCoder coder(frames, copying(calls));
-  const EncodedGof all = coder.encode(2, 2);
+  const EncodedSpan all = coder.encode(2, 2);
   std::vector<std::int32_t> positions(3 * kVertices);
   for (const std::uint32_t f : {0U, 1U, 2U, 4U, 5U, 7U, 3U, 6U}) {
     all.frame(f, positions);
@@ -99,10 +99,10 @@ TEST(SplitCoder, DecodesEachFrameByItsGof) {
 }
 
 TEST(SplitCoder, AddsUpAndTakesTheLargest) {
-  const GofFrames frames = frames_of(8, 3);
+  const SpanFrames frames = frames_of(8, 3);
   Calls calls;
   SplitCoder coder(frames, copying(calls));
-  const EncodedGof all = coder.encode(2, 2);
+  const EncodedSpan all = coder.encode(2, 2);
   EXPECT_EQ(all.num_factors, 30U);
   EXPECT_EQ(all.adaptive_values, 60U);
   EXPECT_EQ(all.clusters, 8U);
@@ -112,7 +112,7 @@ TEST(SplitCoder, AddsUpAndTakesTheLargest) {
 }
 
 TEST(SplitCoder, ReadsFramesOnlyWhereACoderDoes) {
-  const GofFrames frames = frames_of(8, 2);
+  const SpanFrames frames = frames_of(8, 2);
   Calls calls;
   SplitCoder coder(frames, copying(calls, false));
   EXPECT_FALSE(coder.needs_frames(2, 2));
@@ -123,7 +123,7 @@ TEST(SplitCoder, ReadsFramesOnlyWhereACoderDoes) {
 }
 
 TEST(SplitCoder, ReleasesTheAnalysisOfAll) {
-  const GofFrames frames = frames_of(8, 4);
+  const SpanFrames frames = frames_of(8, 4);
   Calls calls;
   SplitCoder coder(frames, copying(calls));
   coder.release_analysis();

@@ -37,7 +37,7 @@ std::vector<std::uint8_t> write_bone_section(const SkinnedModel& model, Unit uni
 class SliceWriter {
  public:
   // shared: the skinned model of a GOF of tracks.
-  SliceWriter(const SkinnedModel& gof, const CodedMesh& mesh, Unit unit,
+  SliceWriter(const SkinnedModel& gof, const OrderedMesh& mesh, Unit unit,
               const TrackFrames& frames, const SkinnedModel* shared = nullptr)
       : gof_(gof),
         mesh_(mesh),
@@ -82,7 +82,7 @@ class SliceWriter {
   void rest_residuals(SectionWriter& section);
 
   const SkinnedModel& gof_;
-  const CodedMesh& mesh_;
+  const OrderedMesh& mesh_;
   Unit unit_;
   TrackFrames frames_;
   const SkinnedModel* shared_;
@@ -321,7 +321,7 @@ void write_rig_header(BitWriter& w, const SkinnedModel& model, std::uint32_t pro
 
 }  // namespace
 
-SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mesh,
+SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const OrderedMesh& mesh,
                                      const SequenceHeader& header) {
   BitWriter w;
   const TrackFrames frames = track_frames(gof);
@@ -334,7 +334,7 @@ SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mes
 }
 
 SkinnedGofPayloads write_skinned_model(const SkinnedModel& model, std::uint32_t model_idx,
-                                       const CodedMesh& mesh, const SequenceHeader& header) {
+                                       const OrderedMesh& mesh, const SequenceHeader& header) {
   BitWriter w;
   w.u(3, model_idx);
   write_rig_header(w, model, header.profile_idc);
@@ -343,7 +343,7 @@ SkinnedGofPayloads write_skinned_model(const SkinnedModel& model, std::uint32_t 
   return SliceWriter(model, mesh, Unit::kModel, {}).write_all(w.take());
 }
 
-SkinnedGofPayloads write_tracks(const SkinnedGof& gof, const CodedMesh& mesh,
+SkinnedGofPayloads write_tracks(const SkinnedGof& gof, const OrderedMesh& mesh,
                                 const SequenceHeader& header) {
   BitWriter w;
   const TrackFrames frames = track_frames(gof);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/codec/kinds/skinned/skinned_gof.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/syntax/sequence_header.h"
 
 namespace rlpc {
@@ -20,13 +20,13 @@ struct SkinnedGofPayloads {
 // must be legal, which is asserted.
 //
 // 6.11 bones_of_gof( )
-SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const CodedMesh& mesh,
+SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const OrderedMesh& mesh,
                                      const SequenceHeader& header);
 // 6.13 model( )
 SkinnedGofPayloads write_skinned_model(const SkinnedModel& model, std::uint32_t model_idx,
-                                       const CodedMesh& mesh, const SequenceHeader& header);
+                                       const OrderedMesh& mesh, const SequenceHeader& header);
 // 6.13.1 tracks_of_gof( )
-SkinnedGofPayloads write_tracks(const SkinnedGof& gof, const CodedMesh& mesh,
+SkinnedGofPayloads write_tracks(const SkinnedGof& gof, const OrderedMesh& mesh,
                                 const SequenceHeader& header);
 
 }  // namespace rlpc

@@ -96,14 +96,14 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
              "as 2<0,1<0+2@1, found `" +
              line.frame_pattern + "`";
     }
-    s.frames.pattern = *pattern;
+    s.inter.pattern = *pattern;
   }
   if (line.partition && s.profile == Profile::kHigh) {
     if (*line.partition == PartitionMethod::kSeeds) {
       return "--partition: patches are not made from seeds: use motion, kway, lloyd or "
              "spectral";
     }
-    s.frames.partition = *line.partition;
+    s.inter.partition = *line.partition;
   } else if (line.partition) {
     s.baseline.partition = *line.partition;
   }
@@ -114,10 +114,10 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   if (line.bpvf) s.target = {Target::kBpvf, *line.bpvf};
   if (line.max_error) s.target = {Target::kMaxError, *line.max_error};
   if (line.lossless) s.target = {Target::kLossless, static_cast<double>(*line.lossless)};
-  if (s.usable_kinds() == KindChoice::kFrames) {
-    s.frames.temporal_layers = std::exchange(s.main.temporal_layers, 1);
-    s.frames.layer_groups = std::max(std::exchange(s.main.layer_groups, 0), 1U);
-    s.frames.rest = std::exchange(s.main.rest, std::nullopt);
+  if (s.usable_kinds() == KindChoice::kInter) {
+    s.inter.temporal_layers = std::exchange(s.main.temporal_layers, 1);
+    s.inter.layer_groups = std::max(std::exchange(s.main.layer_groups, 0), 1U);
+    s.inter.rest = std::exchange(s.main.rest, std::nullopt);
   }
   const bool asked =
       !o.quality.empty() || line.kg || line.bpvf || line.max_error || line.lossless;

@@ -48,9 +48,9 @@ void add_profile_options(CLI::App& app, EncodeCommandLine& line) {
       ->group(method);
   add_choice<KindChoice>(app, "--gof-kind", line.options.settings.kinds,
                          {{"auto", KindChoice::kAuto},
-                          {"clusters", KindChoice::kClusters},
-                          {"bones", KindChoice::kBones},
-                          {"frames", KindChoice::kFrames}},
+                          {"clusters", KindChoice::kCluster},
+                          {"bones", KindChoice::kSkinned},
+                          {"frames", KindChoice::kInter}},
                          "Groups of frames: auto (the cheapest, default), clusters, bones, "
                          "frames (each from decoded ones, High profile)")
       ->group(method);
@@ -75,7 +75,7 @@ void add_profile_options(CLI::App& app, EncodeCommandLine& line) {
 
 void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
   const std::string frames = "GOFs of frames, High profile";
-  FrameTools& t = line.options.settings.frames;
+  InterTools& t = line.options.settings.inter;
   app.add_option(
          "--frame-pattern", line.frame_pattern,
          "What frames are predicted from: previous (the one before), first (of the GOF), "
@@ -85,11 +85,11 @@ void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
          "GOF)")
       ->option_text("WORD")
       ->group(frames);
-  add_choice<FrameWeights>(
+  add_choice<InterWeights>(
       app, "--frame-weights", t.weights,
-      {{"learned", FrameWeights::kLearned},
-       {"geometry", FrameWeights::kGeometry},
-       {"plain", FrameWeights::kPlain}},
+      {{"learned", InterWeights::kLearned},
+       {"geometry", InterWeights::kGeometry},
+       {"plain", InterWeights::kPlain}},
       "Weights of prediction: learned (from the frames before, default), geometry (from the "
       "first; larger, faster), plain (equal ones, as in the SSLPC paper)")
       ->group(frames);

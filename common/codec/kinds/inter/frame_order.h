@@ -14,7 +14,7 @@ namespace rlpc {
 
 inline constexpr int kMaxPatternPeriodLog2 = 6;          // R-FRM-05
 inline constexpr std::uint32_t kMaxExplicitPeriod = 32;  // 6.14.1
-inline constexpr std::uint32_t kMaxFrameDepths = 8;      // 6.14.1
+inline constexpr std::uint32_t kMaxPatternDepths = 8;    // 6.14.1
 
 // An entry of an explicit pattern. Offsets are frames of a period, from 1; 0: the last frame
 // before it.

@@ -10,8 +10,8 @@
 
 #include "common/codec/components/component_limits.h"
 #include "common/codec/components/track_order.h"
-#include "common/codec/mesh/coded_mesh.h"
 #include "common/codec/mesh/mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/mesh/weight_settings.h"
 #include "common/codec/rest/rest_shape.h"
 #include "common/codec/syntax/gof_header.h"

@@ -18,7 +18,7 @@ static_assert(kMaxReciprocal * (kMaxReciprocal * 255 * 256) < (std::uint64_t{1} 
 
 }  // namespace
 
-VertexContexts::VertexContexts(const CodedMesh& mesh, std::size_t num_factors)
+VertexContexts::VertexContexts(const OrderedMesh& mesh, std::size_t num_factors)
     : mesh_(&mesh),
       mean_(num_factors, 256),
       magnitudes_(make_shared_owned<Vector<std::uint8_t>>(mesh.num_vertices() * num_factors)),

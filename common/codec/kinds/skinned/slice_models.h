@@ -12,7 +12,7 @@
 #include "common/codec/bits/residual_models.h"
 #include "common/codec/components/track_models.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/memory/owned.h"
 
 namespace rlpc {
@@ -48,7 +48,7 @@ struct SliceModels {
 // share the magnitudes: on threads of their own, they go on with different vertices of a layer.
 class VertexContexts {
  public:
-  VertexContexts(const CodedMesh& mesh, std::size_t num_factors);
+  VertexContexts(const OrderedMesh& mesh, std::size_t num_factors);
 
   // Call before the residuals of a vertex, which follow factor by factor.
   void start(std::uint32_t v);
@@ -85,7 +85,7 @@ class VertexContexts {
                        std::span<const std::uint32_t> otherwise,
                        std::span<std::uint32_t> means);
 
-  const CodedMesh* mesh_;
+  const OrderedMesh* mesh_;
   Vector<std::uint32_t> mean_;  // ComponentMean, [num_factors]
   // ResidualMagnitude, [num_vertices][num_factors]
   std::shared_ptr<Vector<std::uint8_t>> magnitudes_;

@@ -21,7 +21,7 @@ struct Rings {
     layers.outer_ring = VertexLists(n);
     for (std::uint32_t v = 0; v < n; ++v) layers.layer_order.push_back(v);
   }
-  CodedMesh mesh() const { return {Prediction::kLayers, topology, layers}; }
+  OrderedMesh mesh() const { return {Prediction::kLayers, topology, layers}; }
 
   Topology topology;
   VertexLayers layers;
@@ -30,7 +30,7 @@ struct Rings {
 // The contexts of 9.8.4 literally: factor by factor, with divisions.
 class TextContexts {
  public:
-  TextContexts(const CodedMesh& mesh, std::size_t num_factors)
+  TextContexts(const OrderedMesh& mesh, std::size_t num_factors)
       : mesh_(mesh),
         component_mean_(num_factors, 256),
         magnitude_(num_factors, std::vector<std::int64_t>(mesh.num_vertices(), 0)) {}
@@ -71,7 +71,7 @@ class TextContexts {
     return sum * 256 / static_cast<std::int64_t>(ring.size());
   }
 
-  const CodedMesh& mesh_;
+  const OrderedMesh& mesh_;
   std::vector<std::int64_t> component_mean_;
   std::vector<std::vector<std::int64_t>> magnitude_;
   std::int64_t latest_ = 0;
@@ -81,7 +81,7 @@ class TextContexts {
 
 TEST(VertexContexts, StartAtAMagnitudeOfOne) {
   const Rings rings(2);
-  const CodedMesh mesh = rings.mesh();
+  const OrderedMesh mesh = rings.mesh();
   VertexContexts contexts(mesh, 1);
   contexts.start(0);
   EXPECT_EQ(contexts.expected(), (256U * (96 + 48 + 40)) >> 12);
@@ -90,7 +90,7 @@ TEST(VertexContexts, StartAtAMagnitudeOfOne) {
 
 TEST(VertexContexts, DistinguishBusyFromQuietVertices) {
   const Rings rings(40);
-  const CodedMesh mesh = rings.mesh();
+  const OrderedMesh mesh = rings.mesh();
   VertexContexts contexts(mesh, 8);
   for (std::uint32_t v = 0; v < 38; ++v) {
     contexts.start(v);
@@ -119,7 +119,7 @@ TEST(VertexContexts, AgreeWithTheSpecification) {
       rings.layers.ring.set(v, ring);
       rings.layers.outer_ring.set(v, outer);
     }
-    const CodedMesh mesh = rings.mesh();
+    const OrderedMesh mesh = rings.mesh();
     const std::size_t num_factors = 1 + below(12);
     VertexContexts contexts(mesh, num_factors);
     TextContexts text(mesh, num_factors);
@@ -149,7 +149,7 @@ TEST(VertexContexts, SupportTheLargestResiduals) {
     rings.layers.ring.set(v, std::vector<std::uint32_t>{v - 1, v - 2, v - 3, v - 7});
     rings.layers.outer_ring.set(v, std::vector<std::uint32_t>{v - 4, v - 5});
   }
-  const CodedMesh mesh = rings.mesh();
+  const OrderedMesh mesh = rings.mesh();
   VertexContexts contexts(mesh, 300);
   TextContexts text(mesh, 300);
   for (std::uint32_t v = 0; v < 30; ++v) {

@@ -24,7 +24,7 @@ constexpr double kMinEnergy = 1.2;
 constexpr std::size_t kShare = 4;
 
 // The largest extent of the bounding box of a frame, in the mean of all frames.
-double mean_extent(const GofFrames& frames) {
+double mean_extent(const SpanFrames& frames) {
   double sum = 0.0;
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
     double largest = 0.0;
@@ -109,9 +109,9 @@ ClusterGofAnalysis ClusterGofCoding::analyse(double step, bool world,
   return analyse_cluster_gof(mesh_, frames_, clustering, analysis_settings(step, world));
 }
 
-EncodedGof ClusterGofCoding::encode(double step, const ClusterGofAnalysis& analysis) const {
+EncodedSpan ClusterGofCoding::encode(double step, const ClusterGofAnalysis& analysis) const {
   const ClusterGof gof = code_cluster_gof(frames_, analysis, coding_settings(step));
-  EncodedGof encoded;
+  EncodedSpan encoded;
   encoded.units.push_back(
       {UnitType::kGof, write_cluster_gof(gof, mesh_.header, mesh_.topology)});
   const auto recon = std::make_shared<ClusterRecon>(mesh_.header, mesh_.topology, gof);
@@ -132,8 +132,8 @@ EncodedGof ClusterGofCoding::encode(double step, const ClusterGofAnalysis& analy
   return encoded;
 }
 
-EncodedGof ClusterGofCoding::encode(double step, const ClusterChoice& choice,
-                                    ClusterMaker& maker) const {
+EncodedSpan ClusterGofCoding::encode(double step, const ClusterChoice& choice,
+                                     ClusterMaker& maker) const {
   return encode(step, analyse(step, choice.world, cluster(maker, choice.clusters)));
 }
 

@@ -7,8 +7,8 @@
 #include "encoder/codec/kinds/cluster/cluster_gof_encoder.h"
 #include "encoder/codec/kinds/cluster/clustering.h"
 #include "encoder/codec/settings.h"
-#include "encoder/codec/spans/gof_coder.h"
 #include "encoder/codec/spans/sequence_mesh.h"
+#include "encoder/codec/spans/span_coder.h"
 
 namespace rlpc {
 
@@ -24,19 +24,19 @@ class ClusterGofCoding {
  public:
   // Keeps references to all arguments.
   ClusterGofCoding(const SequenceMesh& mesh, const EncoderSettings& settings,
-                   const GofFrames& frames)
+                   const SpanFrames& frames)
       : mesh_(mesh), settings_(settings), frames_(frames) {}
 
   const SequenceMesh& mesh() const { return mesh_; }
   const EncoderSettings& settings() const { return settings_; }
-  const GofFrames& frames() const { return frames_; }
+  const SpanFrames& frames() const { return frames_; }
   // Clusters of the frames, made as the settings say.
   std::unique_ptr<ClusterMaker> cluster_maker() const;
   Clustering cluster(ClusterMaker& maker, std::uint32_t count) const;
   ClusterGofAnalysis analyse(double step, bool world, const Clustering& clustering) const;
-  EncodedGof encode(double step, const ClusterGofAnalysis& analysis) const;
+  EncodedSpan encode(double step, const ClusterGofAnalysis& analysis) const;
   // Clusters, analyses and encodes.
-  EncodedGof encode(double step, const ClusterChoice& choice, ClusterMaker& maker) const;
+  EncodedSpan encode(double step, const ClusterChoice& choice, ClusterMaker& maker) const;
 
  private:
   ClusterAnalysisSettings analysis_settings(double step, bool world) const;
@@ -44,7 +44,7 @@ class ClusterGofCoding {
 
   const SequenceMesh& mesh_;
   const EncoderSettings& settings_;
-  const GofFrames& frames_;
+  const SpanFrames& frames_;
 };
 
 }  // namespace rlpc

@@ -20,7 +20,7 @@ namespace {
 
 // Codes the seed tracks in closed loop with the predictor of the GOF: residuals refer to
 // recovered positions (delta coding, 3.3 of the paper).
-void code_seed_tracks(ClusterGof& gof, const GofFrames& frames, int position_bits) {
+void code_seed_tracks(ClusterGof& gof, const SpanFrames& frames, int position_bits) {
   std::vector<Track> tracks(gof.seed_tracks.size(), Track(gof.num_frames));
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     SeedTrack& track = gof.seed_tracks[i];
@@ -45,7 +45,7 @@ double seed_bits(const ClusterGof& gof) {
   return estimate_bits(all);
 }
 
-void choose_seed_predictor(ClusterGof& gof, const GofFrames& frames, int position_bits) {
+void choose_seed_predictor(ClusterGof& gof, const SpanFrames& frames, int position_bits) {
   ClusterGof best = gof;
   double least = std::numeric_limits<double>::infinity();
   for (int order = 1; order <= kMaxPredictorOrder; ++order) {
@@ -82,7 +82,7 @@ void set_clusters(ClusterGof& gof, const Clustering& clustering) {
   }
 }
 
-TrajectoryMatrix local_trajectories(const GofFrames& frames, const ClusterAnalysis& cluster) {
+TrajectoryMatrix local_trajectories(const SpanFrames& frames, const ClusterAnalysis& cluster) {
   const std::size_t n = cluster.vertices.size();
   TrajectoryMatrix m{3 * n, frames.num_frames, std::vector<double>(3 * n * frames.num_frames)};
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
@@ -203,7 +203,7 @@ RdCurve rd_curve(const ClusterAnalysis& cluster,
 }
 
 // Replaces the temporal values by the least-squares fit to the quantised spatial values.
-void refit_temporal(const GofFrames& frames, const ClusterAnalysis& cluster,
+void refit_temporal(const SpanFrames& frames, const ClusterAnalysis& cluster,
                     std::vector<QuantisedComponent>& components, double dead_zone) {
   const std::size_t count = components.size();
   if (count == 0) return;
@@ -241,7 +241,7 @@ void refit_temporal(const GofFrames& frames, const ClusterAnalysis& cluster,
 
 }  // namespace
 
-ClusterGofAnalysis analyse_cluster_gof(const SequenceMesh& mesh, const GofFrames& frames,
+ClusterGofAnalysis analyse_cluster_gof(const SequenceMesh& mesh, const SpanFrames& frames,
                                        const Clustering& clustering,
                                        const ClusterAnalysisSettings& settings) {
   const int position_bits = mesh.header.position_bits;
@@ -272,7 +272,7 @@ ClusterGofAnalysis analyse_cluster_gof(const SequenceMesh& mesh, const GofFrames
   return analysis;
 }
 
-ClusterGof code_cluster_gof(const GofFrames& frames, const ClusterGofAnalysis& analysis,
+ClusterGof code_cluster_gof(const SpanFrames& frames, const ClusterGofAnalysis& analysis,
                             const ClusterCodingSettings& settings) {
   using Allocation = ClusterCodingSettings::Allocation;
   const std::size_t count = analysis.clusters.size();

@@ -12,9 +12,9 @@
 #include "encoder/codec/kinds/cluster/clustering.h"
 #include "encoder/codec/kinds/cluster/quantise_components.h"
 #include "encoder/codec/math/principal_components.h"
-#include "encoder/codec/spans/gof_frames.h"
 #include "encoder/codec/spans/residual_choice.h"
 #include "encoder/codec/spans/sequence_mesh.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -57,12 +57,12 @@ struct ClusterGofAnalysis {
 
 // Codes the seed tracks in closed loop, and computes the principal components in the local
 // coordinate frames that a decoder recovers from them.
-ClusterGofAnalysis analyse_cluster_gof(const SequenceMesh& mesh, const GofFrames& frames,
+ClusterGofAnalysis analyse_cluster_gof(const SequenceMesh& mesh, const SpanFrames& frames,
                                        const Clustering& clustering,
                                        const ClusterAnalysisSettings& settings);
 
 // Quantises the components and completes the GOF. frames: those passed to the analysis.
-ClusterGof code_cluster_gof(const GofFrames& frames, const ClusterGofAnalysis& analysis,
+ClusterGof code_cluster_gof(const SpanFrames& frames, const ClusterGofAnalysis& analysis,
                             const ClusterCodingSettings& settings);
 
 }  // namespace rlpc

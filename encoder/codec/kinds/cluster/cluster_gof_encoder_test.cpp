@@ -21,7 +21,7 @@ struct Strip {
   SequenceHeader header;
   std::vector<Triangle> triangles;
   Topology topology;
-  GofFrames frames;
+  SpanFrames frames;
 
   explicit Strip(std::uint32_t num_frames) {
     for (std::uint32_t i = 0; i + 1 < kColumns; ++i) {

@@ -16,12 +16,12 @@ namespace {
 // their maximum. Below, one set of components for all vertices is the better basis.
 constexpr double kHighRank = 0.4;
 
-class ClusterGofCoder : public GofCoder {
+class ClusterSpanCoder : public SpanCoder {
  public:
-  explicit ClusterGofCoder(const ClusterGofCoding& coding) : coding_(coding) {}
+  explicit ClusterSpanCoder(const ClusterGofCoding& coding) : coding_(coding) {}
 
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return true; }
-  EncodedGof encode(double step, double analysis_step) override {
+  EncodedSpan encode(double step, double analysis_step) override {
     if (!clusters_) clusters_ = search_clusters(coding_, step);
     return coding_.encode(step, analysis_.get(analysis_step, [&] {
       if (clusters_->analysis) {
@@ -40,20 +40,20 @@ class ClusterGofCoder : public GofCoder {
   StepCache<ClusterGofAnalysis> analysis_;
 };
 
-class ClusterGofKind : public GofEncoder {
+class ClusterGofKind : public KindEncoder {
  public:
   ClusterGofKind(const SequenceMesh& mesh, const EncoderSettings& settings)
       : mesh_(mesh), settings_(settings) {}
 
-  std::unique_ptr<GofCoder> make_coder(const GofFrames& frames) const override {
+  std::unique_ptr<SpanCoder> make_coder(const SpanFrames& frames) const override {
     if (frames.num_gofs > 1) {
       return std::make_unique<SplitCoder>(
-          frames, [this](const GofFrames& of_gof) { return make_coder(of_gof); });
+          frames, [this](const SpanFrames& of_gof) { return make_coder(of_gof); });
     }
-    return std::make_unique<ClusterGofCoder>(ClusterGofCoding(mesh_, settings_, frames));
+    return std::make_unique<ClusterSpanCoder>(ClusterGofCoding(mesh_, settings_, frames));
   }
 
-  bool may_win(const GofFrames& frames, std::uint32_t components) const override {
+  bool may_win(const SpanFrames& frames, std::uint32_t components) const override {
     return components >= kHighRank * std::min(frames.num_vertices, 3 * frames.num_frames);
   }
 
@@ -67,9 +67,9 @@ class ClusterGofKind : public GofEncoder {
 // In the Main profile, clusters are compared with bones unless the preset is fast, the target
 // is the maximum error, or any Main tool is set explicitly. The Lagrangian cost does not
 // predict the maximum error, which is usually smaller with bones.
-std::unique_ptr<GofEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
-                                                  const EncoderSettings& settings) {
-  if (settings.usable_kinds() == KindChoice::kClusters) {
+std::unique_ptr<KindEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
+                                                   const EncoderSettings& settings) {
+  if (settings.usable_kinds() == KindChoice::kCluster) {
     return std::make_unique<ClusterGofKind>(mesh, settings);
   }
   if (settings.usable_kinds() != KindChoice::kAuto) return nullptr;
@@ -79,8 +79,8 @@ std::unique_ptr<GofEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
   return std::make_unique<ClusterGofKind>(mesh, settings);
 }
 
-std::unique_ptr<GofEncoder> make_last_resort(const SequenceMesh& mesh,
-                                             const EncoderSettings& settings) {
+std::unique_ptr<KindEncoder> make_last_resort(const SequenceMesh& mesh,
+                                              const EncoderSettings& settings) {
   if (settings.profile == Profile::kBaseline || settings.main != MainTools{} ||
       settings.usable_kinds() != KindChoice::kAuto) {
     return nullptr;

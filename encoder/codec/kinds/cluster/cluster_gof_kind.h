@@ -3,17 +3,17 @@
 
 #include <memory>
 
-#include "encoder/codec/spans/gof_kind.h"
+#include "encoder/codec/spans/kind_encoder.h"
 
 namespace rlpc {
 
 // Cluster GOFs as one of the kinds to compare. Null if the settings exclude them.
-std::unique_ptr<GofEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
-                                                  const EncoderSettings& settings);
+std::unique_ptr<KindEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
+                                                   const EncoderSettings& settings);
 
 // Cluster GOFs for the Main profile if the other kinds miss the target, whatever the preset and
 // the target. Null for the Baseline profile, and if the settings require skinned GOFs.
-std::unique_ptr<GofEncoder> make_last_resort(const SequenceMesh& mesh,
-                                             const EncoderSettings& settings);
+std::unique_ptr<KindEncoder> make_last_resort(const SequenceMesh& mesh,
+                                              const EncoderSettings& settings);
 
 }  // namespace rlpc

@@ -57,7 +57,7 @@ class ClusterSearch {
     return std::move(found[costs[1] < costs[0] ? 1 : 0]);
   }
 
-  double cost(const EncodedGof& encoded) const {
+  double cost(const EncodedSpan& encoded) const {
     const double error = squared_error(coding_.frames(), encoded.frame);
     const double bits = 8.0 * static_cast<double>(encoded.units[0].payload.size());
     return error + lambda(step_) * bits;

@@ -16,7 +16,7 @@ std::vector<std::uint32_t> vertices_of(const Clustering& clustering, std::size_t
   return vertices;
 }
 
-MotionClusters::MotionClusters(const GofFrames& frames, std::span<const Triangle> triangles,
+MotionClusters::MotionClusters(const SpanFrames& frames, std::span<const Triangle> triangles,
                                int position_bits, const SeedRules& rules)
     : frames_(frames),
       choice_(frames, triangles, position_bits, rules),

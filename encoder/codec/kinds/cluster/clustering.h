@@ -10,7 +10,7 @@
 
 #include "common/codec/mesh/mesh.h"
 #include "encoder/codec/kinds/cluster/seed_choice.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -49,7 +49,7 @@ class ClusterMaker {
 class MotionClusters : public ClusterMaker {
  public:
   // Keeps references to the frames and triangles.
-  MotionClusters(const GofFrames& frames, std::span<const Triangle> triangles,
+  MotionClusters(const SpanFrames& frames, std::span<const Triangle> triangles,
                  int position_bits, const SeedRules& rules = {});
 
   // Assigns each vertex to that of the first `count` seeds in whose local coordinate frame it
@@ -65,7 +65,7 @@ class MotionClusters : public ClusterMaker {
   static void assign(Clustering& clustering, std::size_t i, const std::vector<double>& motion,
                      std::vector<double>& least);
 
-  const GofFrames& frames_;
+  const SpanFrames& frames_;
   SeedChoice choice_;
   std::vector<double> distance_;  // squared, to the centre; later to the nearest seed
   std::vector<Seed> seeds_;

@@ -18,7 +18,7 @@ constexpr int kPositionBits = 20;
 using Point = std::array<double, 3>;
 
 struct Scene {
-  GofFrames frames;
+  SpanFrames frames;
   std::vector<Triangle> triangles;
 
   // All frames must have the same number of vertices.

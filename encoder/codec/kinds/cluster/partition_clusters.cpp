@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kCentral = 16;    // fixed: vertices whose triangles are compared
 constexpr std::size_t kMostTried = 64;  // fixed: time; then the part has no seed
 
-std::vector<std::uint32_t> nearest_to_centre(const GofFrames& frames,
+std::vector<std::uint32_t> nearest_to_centre(const SpanFrames& frames,
                                              std::vector<std::uint32_t> vertices) {
   std::array<double, 3> centre{};
   for (const std::uint32_t v : vertices) {
@@ -33,7 +33,7 @@ std::vector<std::uint32_t> nearest_to_centre(const GofFrames& frames,
 
 }  // namespace
 
-PartitionClusters::PartitionClusters(PartitionMethod method, const GofFrames& frames,
+PartitionClusters::PartitionClusters(PartitionMethod method, const SpanFrames& frames,
                                      std::span<const Triangle> triangles, int position_bits)
     : method_(method),
       frames_(frames),

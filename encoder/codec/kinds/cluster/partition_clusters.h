@@ -12,7 +12,7 @@
 #include "encoder/codec/kinds/cluster/seed_choice.h"
 #include "encoder/codec/partition/partition.h"
 #include "encoder/codec/settings.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -21,7 +21,7 @@ namespace rlpc {
 class PartitionClusters : public ClusterMaker {
  public:
   // Keeps references to the frames and triangles. method: not kSeeds.
-  PartitionClusters(PartitionMethod method, const GofFrames& frames,
+  PartitionClusters(PartitionMethod method, const SpanFrames& frames,
                     std::span<const Triangle> triangles, int position_bits);
 
   Clustering clusters(std::uint32_t count) override;
@@ -33,7 +33,7 @@ class PartitionClusters : public ClusterMaker {
                               const Partition& partition) const;
 
   PartitionMethod method_;
-  const GofFrames& frames_;
+  const SpanFrames& frames_;
   std::span<const Triangle> triangles_;
   SeedChoice choice_;
   std::map<std::uint32_t, Clustering> known_;  // by count

@@ -17,7 +17,7 @@ constexpr std::array kMethods{PartitionMethod::kKway, PartitionMethod::kLloyd,
 constexpr std::uint32_t kColumns = 12;
 
 struct Sheets {
-  GofFrames frames;
+  SpanFrames frames;
   std::vector<Triangle> triangles;
 };
 
@@ -115,7 +115,7 @@ TEST(PartitionClusters, GiveTheSamePartsAgain) {
 }
 
 TEST(PartitionClusters, OfOneVertex) {
-  const GofFrames frames{1, 2, {0, 0, 0, 1, 1, 1}};
+  const SpanFrames frames{1, 2, {0, 0, 0, 1, 1, 1}};
   PartitionClusters maker(PartitionMethod::kMotion, frames, {}, kPositionBits);
   const Clustering clustering = maker.spread_clusters(8);
   EXPECT_TRUE(clustering.seeds.empty());

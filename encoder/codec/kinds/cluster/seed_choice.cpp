@@ -22,7 +22,7 @@ std::vector<std::vector<std::uint32_t>> incident_triangles(
 }
 
 // The points nearest to vertex v in frame 0, without those that coincide with it.
-std::vector<std::uint32_t> nearest_points(const GofFrames& frames, std::uint32_t v) {
+std::vector<std::uint32_t> nearest_points(const SpanFrames& frames, std::uint32_t v) {
   std::vector<std::pair<double, std::uint32_t>> others;
   for (std::uint32_t u = 0; u < frames.num_vertices; ++u) {
     const double distance = distance2(frames.at(0, u), frames.at(0, v));
@@ -37,7 +37,7 @@ std::vector<std::uint32_t> nearest_points(const GofFrames& frames, std::uint32_t
 }
 
 // Puts the x axis along the longest edge in frame 0, where noise rotates it least.
-Seed rotate_to_longest_edge(const GofFrames& frames, const Triangle& t) {
+Seed rotate_to_longest_edge(const SpanFrames& frames, const Triangle& t) {
   std::size_t best = 0;
   double longest = -1.0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -52,7 +52,7 @@ Seed rotate_to_longest_edge(const GofFrames& frames, const Triangle& t) {
 
 }  // namespace
 
-SeedChoice::SeedChoice(const GofFrames& frames, std::span<const Triangle> triangles,
+SeedChoice::SeedChoice(const SpanFrames& frames, std::span<const Triangle> triangles,
                        int position_bits, const SeedRules& rules)
     : frames_(frames),
       triangles_(triangles),

@@ -10,7 +10,7 @@
 
 #include "common/codec/mesh/mesh.h"
 #include "encoder/codec/kinds/cluster/local_motion.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -34,7 +34,7 @@ class SeedChoice {
   using Suits = std::function<bool(const Triangle&)>;
 
   // Keeps references to the frames and triangles.
-  SeedChoice(const GofFrames& frames, std::span<const Triangle> triangles, int position_bits,
+  SeedChoice(const SpanFrames& frames, std::span<const Triangle> triangles, int position_bits,
              const SeedRules& rules = {});
 
   // The best triangle at a vertex that is degenerate in no frame, turned so that noise rotates
@@ -62,7 +62,7 @@ class SeedChoice {
  private:
   std::vector<Triangle> triangles_at(std::uint32_t v) const;
 
-  const GofFrames& frames_;
+  const SpanFrames& frames_;
   std::span<const Triangle> triangles_;
   int position_bits_;
   SeedRules rules_;

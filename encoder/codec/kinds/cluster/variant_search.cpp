@@ -51,7 +51,7 @@ Trial encode_with(const ClusterGofCoding& coding, const EncoderSettings& setting
                   const ClusterChoice& choice) {
   const ClusterGofCoding variant(coding.mesh(), settings, coding.frames());
   Trial trial{choice, variant.cluster(*variant.cluster_maker(), choice.clusters)};
-  const EncodedGof encoded =
+  const EncodedSpan encoded =
       variant.encode(step, variant.analyse(step, choice.world, trial.clustering));
   trial.error = squared_error(coding.frames(), encoded.frame);
   trial.bits = bits_of(encoded);

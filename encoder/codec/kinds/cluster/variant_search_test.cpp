@@ -23,7 +23,7 @@ struct Sheet {
   std::vector<Triangle> triangles;
   std::vector<Triangle> input_triangles;
   Topology topology;
-  GofFrames frames;
+  SpanFrames frames;
 
   Sheet() {
     for (std::uint32_t y = 0; y + 1 < kSide; ++y) {
@@ -71,7 +71,7 @@ struct Cost {
 };
 
 Cost cost_of(const ClusterGofCoding& coding, const Clustering& clustering) {
-  const EncodedGof encoded = coding.encode(kStep, coding.analyse(kStep, false, clustering));
+  const EncodedSpan encoded = coding.encode(kStep, coding.analyse(kStep, false, clustering));
   return {squared_error(coding.frames(), encoded.frame), bits_of(encoded)};
 }
 
@@ -128,7 +128,7 @@ TEST(SearchVariants, WorldCoordinatesAreNoExcuseForMoreError) {
   literal.baseline.motion = MotionMeasure::kPlain;
   const ClusterGofCoding coding(mesh, literal, sheet.frames);
   const auto error_of = [&](const ClusterChoice& choice, const Clustering& clustering) {
-    const EncodedGof encoded =
+    const EncodedSpan encoded =
         coding.encode(kStep, coding.analyse(kStep, choice.world, clustering));
     return squared_error(sheet.frames, encoded.frame);
   };

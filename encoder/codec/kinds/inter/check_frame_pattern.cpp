@@ -8,10 +8,10 @@ namespace {
 
 using std::to_string;
 
-// Depths of the frames of a period as its entries come; kMaxFrameDepths: not yet.
+// Depths of the frames of a period as its entries come; kMaxPatternDepths: not yet.
 class ExplicitCheck {
  public:
-  explicit ExplicitCheck(std::size_t period) : depth_(period + 1, kMaxFrameDepths) {
+  explicit ExplicitCheck(std::size_t period) : depth_(period + 1, kMaxPatternDepths) {
     depth_[0] = 0;
   }
 
@@ -21,9 +21,9 @@ class ExplicitCheck {
       return frame + " is not one of 1 to " + to_string(depth_.size() - 1) +
              ": a pattern has each frame of its period once";
     }
-    if (depth_[e.offset] != kMaxFrameDepths) return frame + " comes twice";
+    if (depth_[e.offset] != kMaxPatternDepths) return frame + " comes twice";
     for (const std::uint32_t offset : e.reference) {
-      if (offset >= depth_.size() || depth_[offset] == kMaxFrameDepths) {
+      if (offset >= depth_.size() || depth_[offset] == kMaxPatternDepths) {
         return frame + " is predicted from frame " + to_string(offset) +
                ", which does not come before it";
       }
@@ -36,7 +36,7 @@ class ExplicitCheck {
     if (a != b && (a > e.offset || b < e.offset)) {
       return frame + " has two references, but not one on each side, the earlier one first";
     }
-    if (e.depth >= kMaxFrameDepths) return frame + " is deeper than 7";
+    if (e.depth >= kMaxPatternDepths) return frame + " is deeper than 7";
     depth_[e.offset] = e.depth;
     return std::nullopt;
   }

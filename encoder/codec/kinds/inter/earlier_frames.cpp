@@ -149,7 +149,7 @@ std::vector<EarlierFrame> earlier_frames(const FramePattern& pattern,
   return EarlierSearch(pattern, xyz, values, max_distance).run();
 }
 
-double bits_from(const CodedMesh& mesh, std::span<const double> xyz,
+double bits_from(const OrderedMesh& mesh, std::span<const double> xyz,
                  std::span<const double> reference, std::uint32_t step) {
   const double grid_step = static_cast<double>(step) / (1 << kPointFractionBits);
   const auto motion = [&](std::uint32_t v, std::size_t c) {

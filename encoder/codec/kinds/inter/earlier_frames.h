@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/codec/kinds/inter/frame_order.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 
 namespace rlpc {
 
@@ -39,7 +39,7 @@ std::vector<EarlierFrame> earlier_frames(const FramePattern& pattern,
 
 // About the bits of a frame at a step, in 1/16 grid units, whose vertices move from a reference
 // as the vertices around them do.
-double bits_from(const CodedMesh& mesh, std::span<const double> xyz,
+double bits_from(const OrderedMesh& mesh, std::span<const double> xyz,
                  std::span<const double> reference, std::uint32_t step);
 
 }  // namespace rlpc

@@ -7,7 +7,7 @@
 
 #include "common/codec/bits/fixed_point.h"
 #include "common/codec/bits/int_math.h"
-#include "encoder/codec/kinds/inter/frame_coding.h"
+#include "encoder/codec/kinds/inter/closed_loop.h"
 #include "encoder/codec/kinds/inter/on_grid.h"
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/spans/lagrangian.h"
@@ -31,7 +31,7 @@ std::vector<std::int32_t> points(std::span<const double> xyz, int position_bits,
 
 // D + lambda R, in squared grid units; bits alone if positions are exact.
 double cost_of(std::span<const double> xyz, std::span<const std::int32_t> positions,
-               const FrameSettings& settings, double bits) {
+               const InterSettings& settings, double bits) {
   if (settings.exact_flag) return bits;
   double square = 0.0;
   for (std::size_t i = 0; i < xyz.size(); ++i) {
@@ -41,12 +41,12 @@ double cost_of(std::span<const double> xyz, std::span<const std::int32_t> positi
   return square + lambda(settings.step[0] / kPoint) * bits;
 }
 
-double cost_in_layers(const CodedMesh& mesh, const FrameSettings& settings,
+double cost_in_layers(const OrderedMesh& mesh, const InterSettings& settings,
                       const SequenceHeader& header, std::span<const double> xyz) {
-  FrameSettings alone = settings;
+  InterSettings alone = settings;
   alone.rest = {};
   alone.num_patches = 0;
-  FrameCoding coding(mesh, alone, header, 1);
+  ClosedLoop coding(mesh, alone, header, 1);
   std::vector<std::int32_t> positions(xyz.size());
   const auto units = coding.code(xyz, positions);
   return cost_of(xyz, positions, settings, bits_of(units));
@@ -54,19 +54,20 @@ double cost_in_layers(const CodedMesh& mesh, const FrameSettings& settings,
 
 }  // namespace
 
-std::shared_ptr<const CodedRest> code_first_frame(const CodedMesh& mesh,
-                                                  const FrameSettings& frame_settings,
-                                                  const SequenceHeader& header,
-                                                  const EncoderSettings& settings,
-                                                  std::span<const double> xyz) {
-  const RestTools tools = settings.frames.rest.value_or(RestTools::kCounterparts);
+std::shared_ptr<const RestEncoding> code_first_frame(const OrderedMesh& mesh,
+                                                     const InterSettings& frame_settings,
+                                                     const SequenceHeader& header,
+                                                     const EncoderSettings& settings,
+                                                     std::span<const double> xyz) {
+  const RestTools tools = settings.inter.rest.value_or(RestTools::kCounterparts);
   if (tools == RestTools::kPrediction || frame_settings.layer_group_size.size() > 1) return {};
   const bool exact = frame_settings.exact_flag;
   const RestChoices choices{.few = settings.preset == Preset::kFast,
                             .counterparts = tools == RestTools::kCounterparts,
                             .exact = exact};
-  CodedRest coded = code_rest_in_order(mesh, points(xyz, header.position_bits, exact),
-                                       frame_settings.step[0], header.position_bits, choices);
+  RestEncoding coded =
+      code_rest_in_order(mesh, points(xyz, header.position_bits, exact), frame_settings.step[0],
+                         header.position_bits, choices);
   std::vector<std::int32_t> positions(coded.values.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     positions[i] =
@@ -74,7 +75,7 @@ std::shared_ptr<const CodedRest> code_first_frame(const CodedMesh& mesh,
   }
   const double cost = cost_of(xyz, positions, frame_settings, coded.bits);
   if (!(cost < cost_in_layers(mesh, frame_settings, header, xyz))) return {};
-  return std::make_shared<const CodedRest>(std::move(coded));
+  return std::make_shared<const RestEncoding>(std::move(coded));
 }
 
 }  // namespace rlpc

@@ -4,8 +4,8 @@
 #include <memory>
 #include <span>
 
-#include "common/codec/kinds/inter/frame_gof.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/kinds/inter/inter_gof.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/syntax/sequence_header.h"
 #include "encoder/codec/rest/rest_coding.h"
 #include "encoder/codec/settings.h"
@@ -16,10 +16,10 @@ namespace rlpc {
 // less, if several layer groups need them, or if the order is not wanted. xyz
 // [num_vertices][3], in grid units. Takes some 10 us per vertex, a third of that with the fast
 // preset.
-std::shared_ptr<const CodedRest> code_first_frame(const CodedMesh& mesh,
-                                                  const FrameSettings& frame_settings,
-                                                  const SequenceHeader& header,
-                                                  const EncoderSettings& settings,
-                                                  std::span<const double> xyz);
+std::shared_ptr<const RestEncoding> code_first_frame(const OrderedMesh& mesh,
+                                                     const InterSettings& frame_settings,
+                                                     const SequenceHeader& header,
+                                                     const EncoderSettings& settings,
+                                                     std::span<const double> xyz);
 
 }  // namespace rlpc

@@ -26,7 +26,7 @@ constexpr double kMatrixOne = 1 << kMatrixFractionBits;       // fixed: format
 constexpr double kMotionStep = 1.0 / (1 << kMotionStepLog2);  // fixed: format
 
 // A step of a vertex, in 1/16 grid units.
-double step_of(const FrameRecon& recon, std::uint32_t v) {
+double step_of(const InterRecon& recon, std::uint32_t v) {
   return static_cast<double>(recon.step(v)) / kStepUnits;
 }
 
@@ -72,7 +72,8 @@ constexpr double kRidge = 1e-6;
 
 }  // namespace
 
-PatchSearch::PatchSearch(const CodedMesh& mesh, const FrameSettings& settings, bool to_nearest)
+PatchSearch::PatchSearch(const OrderedMesh& mesh, const InterSettings& settings,
+                         bool to_nearest)
     : mesh_(mesh),
       settings_(settings),
       most_alone_(settings.exact_flag ? 0.0
@@ -89,7 +90,7 @@ PatchSearch::PatchSearch(const CodedMesh& mesh, const FrameSettings& settings, b
 }
 
 FramePatches PatchSearch::choose(std::span<const double> xyz, std::uint32_t depth,
-                                 const PatchContexts& contexts, FrameRecon& recon) {
+                                 const PatchContexts& contexts, InterRecon& recon) {
   FramePatches patches(vertices_.size());
   recon.move_patches(patches);
   predict_from_neighbours(xyz, recon);
@@ -103,7 +104,7 @@ FramePatches PatchSearch::choose(std::span<const double> xyz, std::uint32_t dept
   });
   std::array<Costs, 2> of_residuals;
   for_each(of_residuals.size(), [&](std::size_t i) {
-    FrameContexts& of_mode = i == 0 ? of_neighbours_ : of_motions_;
+    InterContexts& of_mode = i == 0 ? of_neighbours_ : of_motions_;
     of_mode.start_frame(recon.place(), depth);
     of_residuals[i] = costs(of_mode, i == 0 ? wanted_ : left_);
   });
@@ -113,7 +114,7 @@ FramePatches PatchSearch::choose(std::span<const double> xyz, std::uint32_t dept
 
 // Of the whole motion, its offset alone, and the last motion: by what they leave, and bits.
 PatchMotion PatchSearch::cheapest_motion(std::size_t patch, std::span<const double> xyz,
-                                         std::uint32_t depth, const FrameRecon& recon,
+                                         std::uint32_t depth, const InterRecon& recon,
                                          PatchContexts& contexts) {
   const PatchMotion all = fit(patch, xyz, depth, recon);
   PatchMotion offset = all;
@@ -162,7 +163,7 @@ double PatchSearch::cost_alone(std::size_t patch) const {
   return error / kLambda;
 }
 
-PatchSearch::Costs PatchSearch::costs(FrameContexts& contexts,
+PatchSearch::Costs PatchSearch::costs(InterContexts& contexts,
                                       const std::vector<double>& wanted) const {
   Costs costs(vertices_.size(), 0.0);
   std::uint32_t first = 0;
@@ -191,7 +192,7 @@ PatchSearch::Costs PatchSearch::costs(FrameContexts& contexts,
 }
 
 // Closed loop, with residuals rounded without models.
-void PatchSearch::predict_from_neighbours(std::span<const double> xyz, FrameRecon& recon) {
+void PatchSearch::predict_from_neighbours(std::span<const double> xyz, InterRecon& recon) {
   const double round_up = settings_.exact_flag ? 0.5 : 0.5 - kDeadZone;
   for (std::uint32_t layer = 0; layer < mesh_.num_layers(); ++layer) {
     const auto vertices = mesh_.vertices_of_layers(layer, layer + 1);
@@ -220,7 +221,7 @@ void PatchSearch::predict_from_neighbours(std::span<const double> xyz, FrameReco
 
 // Least squares: what the last motion of the patch leaves.
 PatchMotion PatchSearch::fit(std::size_t patch, std::span<const double> xyz,
-                             std::uint32_t depth, const FrameRecon& recon) const {
+                             std::uint32_t depth, const InterRecon& recon) const {
   const auto reference = recon.reference();
   const PatchRecon& patches = recon.patches();
   const Vec3i centre = patches.centre(patch);
@@ -262,7 +263,7 @@ PatchMotion PatchSearch::fit(std::size_t patch, std::span<const double> xyz,
 // are those from the decoder's integers: with other rounding, a patch without residuals would
 // be taken for exact though some of its coordinates are one step off.
 double PatchSearch::error(std::size_t patch, std::span<const double> xyz, std::uint32_t depth,
-                          const FrameRecon& recon, const PatchMotion& motion,
+                          const InterRecon& recon, const PatchMotion& motion,
                           std::vector<double>* left) const {
   const auto moved =
       recon.patches().motion(patch, depth, settings_.step[depth], motion.residual);

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "common/codec/kinds/inter/frame_contexts.h"
-#include "common/codec/kinds/inter/frame_gof.h"
+#include "common/codec/kinds/inter/inter_contexts.h"
+#include "common/codec/kinds/inter/inter_gof.h"
 #include "common/codec/kinds/inter/patch_contexts.h"
-#include "common/codec/kinds/inter/recon/frame_recon.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/kinds/inter/recon/inter_recon.h"
+#include "common/codec/mesh/ordered_mesh.h"
 
 namespace rlpc {
 
@@ -17,34 +17,34 @@ class PatchSearch {
  public:
   // The mesh must have layers; mesh and settings, which have patches, must outlive it.
   // to_nearest: residuals are rounded to nearest, and no coordinate errs by more than that.
-  PatchSearch(const CodedMesh& mesh, const FrameSettings& settings, bool to_nearest);
+  PatchSearch(const OrderedMesh& mesh, const InterSettings& settings, bool to_nearest);
 
   // Of the frame that recon has started, not the first of its GOF; xyz [num_vertices][3], in
   // grid units. contexts: those of the writer, which has started the frame. Predicts all
   // vertices from neighbours, for comparison, which leaves no trace in recon once the frame is
   // coded. Takes about as long as to code it.
   FramePatches choose(std::span<const double> xyz, std::uint32_t depth,
-                      const PatchContexts& contexts, FrameRecon& recon);
+                      const PatchContexts& contexts, InterRecon& recon);
 
  private:
   using Costs = std::vector<double>;  // [num_patches], in bits
 
-  void predict_from_neighbours(std::span<const double> xyz, FrameRecon& recon);
+  void predict_from_neighbours(std::span<const double> xyz, InterRecon& recon);
   PatchMotion cheapest_motion(std::size_t patch, std::span<const double> xyz,
-                              std::uint32_t depth, const FrameRecon& recon,
+                              std::uint32_t depth, const InterRecon& recon,
                               PatchContexts& contexts);
   void choose_modes(const Costs& of_neighbours, const Costs& of_motion, PatchContexts contexts,
                     FramePatches& patches) const;
   double cost_alone(std::size_t patch) const;
   PatchMotion fit(std::size_t patch, std::span<const double> xyz, std::uint32_t depth,
-                  const FrameRecon& recon) const;
+                  const InterRecon& recon) const;
   double error(std::size_t patch, std::span<const double> xyz, std::uint32_t depth,
-               const FrameRecon& recon, const PatchMotion& motion,
+               const InterRecon& recon, const PatchMotion& motion,
                std::vector<double>* left) const;
-  Costs costs(FrameContexts& contexts, const std::vector<double>& wanted) const;
+  Costs costs(InterContexts& contexts, const std::vector<double>& wanted) const;
 
-  const CodedMesh& mesh_;
-  const FrameSettings& settings_;
+  const OrderedMesh& mesh_;
+  const InterSettings& settings_;
   double most_alone_;  // error of a coordinate of a patch without residuals, in steps
   std::vector<std::vector<std::uint32_t>> vertices_;  // of each patch
   // [num_vertices][3]: residuals in steps, from neighbours and from motions.
@@ -52,8 +52,8 @@ class PatchSearch {
   std::vector<double> left_;
   // As if all vertices were predicted in one way in all frames: what a mode has cost a patch
   // does not depend on the mode that was chosen for it.
-  FrameContexts of_neighbours_;
-  FrameContexts of_motions_;
+  InterContexts of_neighbours_;
+  InterContexts of_motions_;
 };
 
 }  // namespace rlpc

@@ -39,17 +39,17 @@ double scale_to(double wanted, double squared_error) {
   return ratio < kNear && ratio > 1.0 / kNear ? 1.0 : std::sqrt(ratio);
 }
 
-using Encodings = std::vector<std::unique_ptr<FrameEncoding>>;
+using Encodings = std::vector<std::unique_ptr<InterTrial>>;
 
 void code_all_to(Encodings& encodings, std::uint32_t count) {
   for_each(encodings.size(), [&](std::size_t i) { encodings[i]->code_to(count); });
 }
 
 // Starts all anew but those that have about the error of the first.
-void restart_at_equal_error(Encodings& encodings, const StartEncoding& start) {
+void restart_at_equal_error(Encodings& encodings, const StartTrial& start) {
   const double wanted = encodings.front()->squared_error();
   for (auto& encoding : encodings) {
-    FrameChoice choice = encoding->choice();
+    InterChoice choice = encoding->choice();
     const double scale = scale_to(wanted, encoding->squared_error());
     if (scale == 1.0) continue;
     choice.step_scale *= scale;
@@ -61,7 +61,7 @@ void restart_at_equal_error(Encodings& encodings, const StartEncoding& start) {
 
 std::vector<FramePattern> patterns_of(const EncoderSettings& settings, bool is_open_ended,
                                       std::uint32_t num_frames) {
-  const FrameTools& tools = settings.frames;
+  const InterTools& tools = settings.inter;
   if (tools.pattern) return {*tools.pattern};
   // Frames from both sides predict smooth motion best; the first, where a surface trembles
   // about a shape. Without loss, frames are too noisy for the mean of two to gain anything.
@@ -84,12 +84,12 @@ std::vector<FramePattern> patterns_of(const EncoderSettings& settings, bool is_o
 
 std::vector<std::uint32_t> patches_of(const EncoderSettings& settings, bool is_open_ended,
                                       std::uint32_t num_frames) {
-  if (settings.frames.patches) return {*settings.frames.patches};
+  if (settings.inter.patches) return {*settings.inter.patches};
   if (is_open_ended || settings.preset == Preset::kFast || num_frames == 1) return {0};
   return {0, kFewPatches, kManyPatches};
 }
 
-std::vector<FrameChoice> choices_of_patches(const std::vector<FramePattern>& patterns,
+std::vector<InterChoice> choices_of_patches(const std::vector<FramePattern>& patterns,
                                             const std::vector<std::uint32_t>& patches) {
   if (patches.size() == 1) return {{patterns.front(), patches.front()}};
   std::vector<FramePattern> compared{patterns.front()};
@@ -97,18 +97,18 @@ std::vector<FrameChoice> choices_of_patches(const std::vector<FramePattern>& pat
       patterns.begin() + 1, patterns.end(),
       [](const FramePattern& pattern) { return pattern.kind == FramePattern::kDyadic; });
   if (dyadic != patterns.end()) compared.push_back(*dyadic);
-  std::vector<FrameChoice> choices;
+  std::vector<InterChoice> choices;
   for (const FramePattern& pattern : compared) {
     for (const std::uint32_t count : patches) choices.push_back({pattern, count});
   }
   return choices;
 }
 
-std::unique_ptr<FrameEncoding> cheapest(const std::vector<FrameChoice>& choices,
-                                        std::uint32_t num_frames, const StartEncoding& start) {
+std::unique_ptr<InterTrial> cheapest(const std::vector<InterChoice>& choices,
+                                     std::uint32_t num_frames, const StartTrial& start) {
   Encodings left;
   std::uint32_t period = 1;
-  for (const FrameChoice& choice : choices) {
+  for (const InterChoice& choice : choices) {
     left.push_back(start(choice));
     period = std::max(period, choice.pattern.period());
   }

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/codec/kinds/inter/frame_order.h"
-#include "encoder/codec/kinds/inter/frame_encoding.h"
+#include "encoder/codec/kinds/inter/inter_trial.h"
 #include "encoder/codec/settings.h"
-#include "encoder/codec/spans/gof_coder.h"
+#include "encoder/codec/spans/span_coder.h"
 
 namespace rlpc {
 
@@ -25,11 +25,11 @@ std::vector<std::uint32_t> patches_of(const EncoderSettings& settings, bool is_o
 
 // The choices that numbers of patches are compared by: with the first pattern, and if there is
 // one, with the first whose frames are predicted from both sides, where motions are small.
-std::vector<FrameChoice> choices_of_patches(const std::vector<FramePattern>& patterns,
+std::vector<InterChoice> choices_of_patches(const std::vector<FramePattern>& patterns,
                                             const std::vector<std::uint32_t>& patches);
 
 // Starts the encoding of a GOF by a choice.
-using StartEncoding = std::function<std::unique_ptr<FrameEncoding>(const FrameChoice&)>;
+using StartTrial = std::function<std::unique_ptr<InterTrial>(const InterChoice&)>;
 
 // Encodes a GOF by each choice, side by side on several threads. Half of them end early, the
 // costlier ones, each time twice as many frames are coded, until two are left: what moves later
@@ -38,7 +38,7 @@ using StartEncoding = std::function<std::unique_ptr<FrameEncoding>(const FrameCh
 // of the first choice, and the part is coded again. What is coded in vain takes as long as two
 // and a half encodings, if there are four choices that take equally long. Returns the one that
 // is left.
-std::unique_ptr<FrameEncoding> cheapest(const std::vector<FrameChoice>& choices,
-                                        std::uint32_t num_frames, const StartEncoding& start);
+std::unique_ptr<InterTrial> cheapest(const std::vector<InterChoice>& choices,
+                                     std::uint32_t num_frames, const StartTrial& start);
 
 }  // namespace rlpc

@@ -8,8 +8,8 @@
 
 #include "common/parallel/for_each.h"
 #include "common/testing/tube.h"
-#include "encoder/codec/kinds/inter/frame_gof_kind.h"
 #include "encoder/codec/kinds/inter/frame_pattern_text.h"
+#include "encoder/codec/kinds/inter/inter_gof_kind.h"
 #include "encoder/codec/spans/lagrangian.h"
 
 namespace rlpc {
@@ -23,8 +23,8 @@ class PatternSearch : public testing::Test {
  protected:
   PatternSearch() {
     settings_.profile = Profile::kHigh;
-    settings_.kinds = KindChoice::kFrames;
-    settings_.frames.patches = 0;
+    settings_.kinds = KindChoice::kInter;
+    settings_.inter.patches = 0;
     header_.profile_idc = kProfileHigh;
     header_.num_vertices = kRings * kSides;
     header_.position_bits = 16;
@@ -34,8 +34,8 @@ class PatternSearch : public testing::Test {
 
   // A tube whose vertices are moved along each axis by shift( frame, vertex, axis ).
   using Shift = std::function<double(std::uint32_t f, std::uint32_t v, std::uint32_t c)>;
-  GofFrames tube(std::uint32_t num_frames, const Shift& shift) const {
-    GofFrames frames{header_.num_vertices, num_frames, {}};
+  SpanFrames tube(std::uint32_t num_frames, const Shift& shift) const {
+    SpanFrames frames{header_.num_vertices, num_frames, {}};
     for (std::uint32_t f = 0; f < num_frames; ++f) {
       for (std::uint32_t v = 0; v < header_.num_vertices; ++v) {
         const std::uint32_t ring = v / kSides;
@@ -47,11 +47,11 @@ class PatternSearch : public testing::Test {
     }
     return frames;
   }
-  EncodedGof encoded(const GofFrames& frames, double step = kStep) const {
-    const auto kind = make_frame_gof_kind(mesh_, settings_);
+  EncodedSpan encoded(const SpanFrames& frames, double step = kStep) const {
+    const auto kind = make_inter_gof_kind(mesh_, settings_);
     return kind->make_coder(frames)->encode(step, step);
   }
-  EncodedGof encoded_with_error(const GofFrames& frames, double squared_error) const {
+  EncodedSpan encoded_with_error(const SpanFrames& frames, double squared_error) const {
     double step = kStep;
     for (int i = 0; i < 4; ++i) {
       step *= std::sqrt(squared_error / *encoded(frames, step).squared_error);
@@ -59,18 +59,18 @@ class PatternSearch : public testing::Test {
     return encoded(frames, step);
   }
   // The pattern that is chosen. It must cost no more than the others do.
-  std::string chosen(const GofFrames& frames) {
-    settings_.frames.pattern.reset();
-    const EncodedGof best = encoded(frames);
+  std::string chosen(const SpanFrames& frames) {
+    settings_.inter.pattern.reset();
+    const EncodedSpan best = encoded(frames);
     EXPECT_EQ(best.choices.size(), 1U);
     for (const char* const text : {"previous", "first", "dyadic:16", "dyadic:64"}) {
-      settings_.frames.pattern = parse_frame_pattern_text(text);
-      const EncodedGof other = encoded_with_error(frames, *best.squared_error);
+      settings_.inter.pattern = parse_frame_pattern_text(text);
+      const EncodedSpan other = encoded_with_error(frames, *best.squared_error);
       EXPECT_LE(bits_at_equal_error(bits_of(best), *best.squared_error),
                 bits_at_equal_error(bits_of(other), *other.squared_error))
           << text;
     }
-    settings_.frames.pattern.reset();
+    settings_.inter.pattern.reset();
     return frame_pattern_text(best.choices.front().pattern);
   }
 
@@ -113,12 +113,12 @@ TEST_F(PatternSearch, TremblingIsPredictedFromTheFirstFrame) {
 }
 
 TEST_F(PatternSearch, DoesNotDependOnThreads) {
-  const GofFrames frames = tube(70, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
+  const SpanFrames frames = tube(70, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
     return 800 * std::sin(0.05 * f + 0.3 * v + c);
   });
-  const EncodedGof one = encoded(frames);
+  const EncodedSpan one = encoded(frames);
   const Threads use(3);
-  const EncodedGof several = encoded(frames);
+  const EncodedSpan several = encoded(frames);
   ASSERT_EQ(several.units.size(), one.units.size());
   for (std::size_t i = 0; i < one.units.size(); ++i) {
     EXPECT_EQ(several.units[i].payload, one.units[i].payload) << i;
@@ -126,18 +126,18 @@ TEST_F(PatternSearch, DoesNotDependOnThreads) {
 }
 
 TEST_F(PatternSearch, KnowsItsError) {
-  const GofFrames frames = tube(20, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
+  const SpanFrames frames = tube(20, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
     return 800 * std::sin(0.5 * f + 0.3 * v + c);
   });
-  const EncodedGof gof = encoded(frames);
+  const EncodedSpan gof = encoded(frames);
   ASSERT_TRUE(gof.squared_error);
   EXPECT_NEAR(*gof.squared_error, squared_error(frames, gof.frame), 1e-6 * *gof.squared_error);
 }
 
 // Two halves that move against each other, with bumps that no neighbours tell.
 TEST_F(PatternSearch, RigidPartsGetPatches) {
-  settings_.frames.patches.reset();
-  const GofFrames frames = tube(40, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
+  settings_.inter.patches.reset();
+  const SpanFrames frames = tube(40, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
     std::minstd_rand random(v * 3 + c + 1);
     random.discard(3);
     const auto bump = static_cast<double>(random() % 600);
@@ -145,11 +145,11 @@ TEST_F(PatternSearch, RigidPartsGetPatches) {
     return bump + along * 30.0 * f * (c == 0 ? 1.0 : 0.3) +
            (c == 2 ? 900 * std::sin(0.4 * f) : 0);
   });
-  const EncodedGof best = encoded(frames);
+  const EncodedSpan best = encoded(frames);
   ASSERT_EQ(best.choices.size(), 1U);
   EXPECT_GT(best.choices.front().num_patches, 0U);
-  settings_.frames.patches = 0;
-  settings_.frames.pattern = best.choices.front().pattern;
+  settings_.inter.patches = 0;
+  settings_.inter.pattern = best.choices.front().pattern;
   EXPECT_LT(bits_of(best), 0.8 * bits_of(encoded(frames)));
 }
 
@@ -165,7 +165,7 @@ TEST(PatternsOf, AreAllThatTheGofHasFramesFor) {
   EXPECT_EQ(texts(patterns_of(settings, false, 18)), "previous first dyadic:16 dyadic:64 ");
   EXPECT_EQ(texts(patterns_of(settings, false, 17)), "previous first dyadic:16 ");
   EXPECT_EQ(texts(patterns_of(settings, false, 2)), "previous first ");
-  settings.frames.pattern = FramePattern{FramePattern::kDyadic, 3, {}, 1};
+  settings.inter.pattern = FramePattern{FramePattern::kDyadic, 3, {}, 1};
   EXPECT_EQ(texts(patterns_of(settings, false, 65)), "dyadic:8 ");
 }
 
@@ -173,7 +173,7 @@ TEST(PatternsOf, AreInTheOrderOfFramesIfThereIsNoLoss) {
   EncoderSettings settings;
   settings.target = {Target::kLossless, 12};
   EXPECT_EQ(texts(patterns_of(settings, false, 65)), "previous first ");
-  settings.frames.temporal_layers = 2;
+  settings.inter.temporal_layers = 2;
   EXPECT_EQ(texts(patterns_of(settings, false, 65)), "dyadic:16 ");
 }
 
@@ -186,11 +186,11 @@ TEST(PatternsOf, IsOneIfThereIsNoTimeToCompareOrToWait) {
 
 TEST(PatternsOf, HaveTheTemporalLayersOfTheSettings) {
   EncoderSettings settings;
-  settings.frames.temporal_layers = 5;
+  settings.inter.temporal_layers = 5;
   EXPECT_EQ(texts(patterns_of(settings, false, 65)), "dyadic:16 dyadic:64 ");
   EXPECT_EQ(texts(patterns_of(settings, false, 3)), "dyadic:16 ");
   EXPECT_EQ(texts(patterns_of(settings, true, 65)), "dyadic:16 ");
-  settings.frames.temporal_layers = 7;
+  settings.inter.temporal_layers = 7;
   EXPECT_EQ(texts(patterns_of(settings, false, 65)), "dyadic:64 ");
 }
 
@@ -202,7 +202,7 @@ TEST(PatchesOf, AreSeveralUnlessThereIsNoTimeToCompareOrToWait) {
   EXPECT_EQ(patches_of(settings, false, 1), none);
   settings.preset = Preset::kFast;
   EXPECT_EQ(patches_of(settings, false, 65), none);
-  settings.frames.patches = 7;
+  settings.inter.patches = 7;
   EXPECT_EQ(patches_of(settings, true, 65), std::vector<std::uint32_t>{7});
 }
 
@@ -210,7 +210,7 @@ TEST(PatchesOf, AreComparedByTwoPatterns) {
   const FramePattern previous;
   const FramePattern first{FramePattern::kFirst, 1, {}, 1};
   const FramePattern dyadic{FramePattern::kDyadic, 4, {}, 1};
-  const std::vector<FrameChoice> expected{
+  const std::vector<InterChoice> expected{
       {previous, 0}, {previous, 9}, {dyadic, 0}, {dyadic, 9}};
   EXPECT_EQ(choices_of_patches({previous, first, dyadic}, {0, 9}), expected);
   EXPECT_EQ(choices_of_patches({previous, first}, {0, 9}).size(), 2U);

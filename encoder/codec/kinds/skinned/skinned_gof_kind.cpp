@@ -2,29 +2,29 @@
 
 #include "encoder/codec/kinds/skinned/reuse/span_reuse.h"
 #include "encoder/codec/kinds/skinned/search/skinned_context.h"
-#include "encoder/codec/kinds/skinned/skinned_gof_coder.h"
+#include "encoder/codec/kinds/skinned/skinned_span_coder.h"
 
 namespace rlpc {
 namespace {
 
-class SkinnedGofKind : public GofEncoder {
+class SkinnedGofKind : public KindEncoder {
  public:
   SkinnedGofKind(const SequenceMesh& mesh, const EncoderSettings& settings)
       : context_{
             mesh.header, settings, mesh.triangles,
-            CodedMeshes(mesh.topology, mesh.triangles, settings.profile == Profile::kHigh)} {}
+            OrderedMeshes(mesh.topology, mesh.triangles, settings.profile == Profile::kHigh)} {}
 
-  std::unique_ptr<GofCoder> make_coder(const GofFrames& frames) const override {
-    return std::make_unique<SkinnedGofCoder>(context_, frames);
+  std::unique_ptr<SpanCoder> make_coder(const SpanFrames& frames) const override {
+    return std::make_unique<SkinnedSpanCoder>(context_, frames);
   }
 
-  std::optional<EncodedGof> encode_with(const KeptModel& model, const GofFrames& frames,
-                                        double step, double most) const override {
+  std::optional<EncodedSpan> encode_with(const KeptModel& model, const SpanFrames& frames,
+                                         double step, double most) const override {
     return encode_with_model(context_, model, frames, step, most);
   }
 
   // Never called: if there are several kinds, this one comes first and is always encoded.
-  bool may_win(const GofFrames& /*frames*/, std::uint32_t /*components*/) const override {
+  bool may_win(const SpanFrames& /*frames*/, std::uint32_t /*components*/) const override {
     return false;
   }
 
@@ -34,10 +34,10 @@ class SkinnedGofKind : public GofEncoder {
 
 }  // namespace
 
-std::unique_ptr<GofEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
-                                                  const EncoderSettings& settings) {
+std::unique_ptr<KindEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
+                                                   const EncoderSettings& settings) {
   const bool is_wanted = settings.usable_kinds() == KindChoice::kAuto ||
-                         settings.usable_kinds() == KindChoice::kBones;
+                         settings.usable_kinds() == KindChoice::kSkinned;
   if (settings.profile == Profile::kBaseline || !is_wanted) return nullptr;
   return std::make_unique<SkinnedGofKind>(mesh, settings);
 }

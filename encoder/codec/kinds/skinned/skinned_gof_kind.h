@@ -4,12 +4,12 @@
 
 #include <memory>
 
-#include "encoder/codec/spans/gof_kind.h"
+#include "encoder/codec/spans/kind_encoder.h"
 
 namespace rlpc {
 
 // Null for the Baseline profile.
-std::unique_ptr<GofEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
-                                                  const EncoderSettings& settings);
+std::unique_ptr<KindEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
+                                                   const EncoderSettings& settings);
 
 }  // namespace rlpc

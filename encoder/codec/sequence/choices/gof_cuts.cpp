@@ -54,7 +54,7 @@ class GofCosts {
   }
 
   // Expected Lagrangian cost of a GOF, cached.
-  double of(const GofSpan& span) {
+  double of(const FrameRange& span) {
     // tuned: Frames of a GOF in its sample. More hardly change the estimate.
     constexpr std::uint32_t kFrames = 16;
     const auto [place, is_new] = known_.try_emplace({span.first, span.count}, 0.0);
@@ -66,7 +66,7 @@ class GofCosts {
   double of_equal(std::uint32_t num_frames, std::uint32_t longest) const {
     constexpr std::uint32_t kEvery = 8;  // fixed: 16 of 128 frames, as above
     double sum = 0.0;
-    for (const GofSpan& span : equal_gofs(num_frames, longest)) {
+    for (const FrameRange& span : equal_gofs(num_frames, longest)) {
       sum += expected(span, (span.count + kEvery - 1) / kEvery);
     }
     return sum;
@@ -75,7 +75,7 @@ class GofCosts {
  private:
   // Displacements of the vertices from their mean positions in a sample of frames. The sample
   // includes the first and the last frame, which reveal a cut that is slightly misplaced.
-  TrajectoryMatrix displacements(const GofSpan& span, std::uint32_t most) const {
+  TrajectoryMatrix displacements(const FrameRange& span, std::uint32_t most) const {
     const std::uint32_t count = std::min(span.count, most);
     TrajectoryMatrix matrix;
     matrix.num_values = vertices_.size();
@@ -100,7 +100,7 @@ class GofCosts {
     return matrix;
   }
 
-  double expected(const GofSpan& span, std::uint32_t most) const {
+  double expected(const FrameRange& span, std::uint32_t most) const {
     // tuned (off: 0): Bits of a rest position, which each GOF codes anew: about five for each
     // coordinate. Without this cost, GOFs would be cut far too often.
     constexpr double kRestBits = 15.0;
@@ -125,16 +125,16 @@ class GofCosts {
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> known_;
 };
 
-double cost(GofCosts& costs, const std::vector<GofSpan>& spans) {
+double cost(GofCosts& costs, const std::vector<FrameRange>& spans) {
   double sum = 0.0;
-  for (const GofSpan& span : spans) sum += costs.of(span);
+  for (const FrameRange& span : spans) sum += costs.of(span);
   return sum;
 }
 
 // The cheapest division into GOFs that all begin at multiples of `unit`, by dynamic
 // programming.
-std::vector<GofSpan> cheapest_of_units(GofCosts& costs, std::uint32_t num_frames,
-                                       std::uint32_t longest, std::uint32_t unit) {
+std::vector<FrameRange> cheapest_of_units(GofCosts& costs, std::uint32_t num_frames,
+                                          std::uint32_t longest, std::uint32_t unit) {
   struct Best {
     double cost = std::numeric_limits<double>::infinity();
     std::uint32_t before = 0;  // where the last span begins, in units
@@ -145,13 +145,13 @@ std::vector<GofSpan> cheapest_of_units(GofCosts& costs, std::uint32_t num_frames
   for (std::uint32_t end = 1; end <= num_units; ++end) {
     const std::uint32_t end_frame = std::min(end * unit, num_frames);
     for (std::uint32_t begin = end; begin-- > 0;) {
-      const GofSpan span{begin * unit, end_frame - begin * unit};
+      const FrameRange span{begin * unit, end_frame - begin * unit};
       if (span.count > longest) break;
       const double sum = best[begin].cost + costs.of(span);
       if (sum < best[end].cost) best[end] = {sum, begin};
     }
   }
-  std::vector<GofSpan> spans;
+  std::vector<FrameRange> spans;
   for (std::uint32_t end = num_units; end > 0; end = best[end].before) {
     const std::uint32_t first = best[end].before * unit;
     spans.push_back({first, std::min(end * unit, num_frames) - first});
@@ -161,16 +161,16 @@ std::vector<GofSpan> cheapest_of_units(GofCosts& costs, std::uint32_t num_frames
 }
 
 // Moves the cut between two adjacent spans, by halving distances, where that lowers the cost.
-void refine(GofCosts& costs, std::uint32_t longest, std::uint32_t unit, GofSpan& a,
-            GofSpan& b) {
+void refine(GofCosts& costs, std::uint32_t longest, std::uint32_t unit, FrameRange& a,
+            FrameRange& b) {
   for (std::uint32_t by = unit / 2; by > 0; by /= 2) {
     for (const bool later : {false, true}) {
-      const GofSpan& from = later ? b : a;
-      const GofSpan& to = later ? a : b;
+      const FrameRange& from = later ? b : a;
+      const FrameRange& to = later ? a : b;
       if (from.count <= by || to.count + by > longest) continue;
       const std::uint32_t count = later ? a.count + by : a.count - by;
-      const GofSpan left{a.first, count};
-      const GofSpan right{a.first + count, a.count + b.count - count};
+      const FrameRange left{a.first, count};
+      const FrameRange right{a.first + count, a.count + b.count - count};
       if (costs.of(left) + costs.of(right) >= costs.of(a) + costs.of(b)) continue;
       a = left;
       b = right;
@@ -190,19 +190,19 @@ std::optional<InputError> read_all(FrameSource& source, GofCosts& costs) {
 
 }  // namespace
 
-InputResult<std::vector<GofSpan>> cheapest_gofs(FrameSource& source, std::uint32_t longest,
-                                                double step) {
+InputResult<std::vector<FrameRange>> cheapest_gofs(FrameSource& source, std::uint32_t longest,
+                                                   double step) {
   // tuned (off: 1): GOFs are first cut at multiples of the longest length divided by this
   // number; the cuts are then refined to single frames. Finer units cost time in proportion to
   // the square.
   constexpr std::uint32_t kUnitsOfLongest = 8;
   const std::uint32_t num_frames = source.num_frames();
-  std::vector<GofSpan> equal = equal_gofs(num_frames, longest);
+  std::vector<FrameRange> equal = equal_gofs(num_frames, longest);
   const std::uint32_t unit = longest / kUnitsOfLongest;
   if (equal.size() < 2 || unit == 0 || num_frames > kMostFrames) return equal;
   GofCosts costs(source.num_vertices(), num_frames, step);
   if (auto error = read_all(source, costs)) return *error;
-  std::vector<GofSpan> spans = cheapest_of_units(costs, num_frames, longest, unit);
+  std::vector<FrameRange> spans = cheapest_of_units(costs, num_frames, longest, unit);
   for (std::size_t i = 1; i < spans.size(); ++i) {
     refine(costs, longest, unit, spans[i - 1], spans[i]);
   }

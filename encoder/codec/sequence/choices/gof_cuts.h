@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "encoder/codec/spans/gof_span.h"
+#include "encoder/codec/spans/frame_range.h"
 #include "encoder/meshes/frame_source.h"
 
 namespace rlpc {
@@ -17,8 +17,8 @@ namespace rlpc {
 //   step  likely quantiser step, in the unit of the coordinates
 //
 // Errors: those of the source.
-InputResult<std::vector<GofSpan>> cheapest_gofs(FrameSource& source, std::uint32_t longest,
-                                                double step);
+InputResult<std::vector<FrameRange>> cheapest_gofs(FrameSource& source, std::uint32_t longest,
+                                                   double step);
 
 // The most frames that a GOF should have: `shortest` or that times a power of two, at most
 // `longest`. Each GOF codes the shape again, so long ones cost less where it moves little;

@@ -45,10 +45,10 @@ double waves(std::uint32_t act, std::uint32_t f, std::uint32_t v, std::uint32_t 
   return x;
 }
 
-void expect_whole(const std::vector<GofSpan>& spans, std::uint32_t num_frames,
+void expect_whole(const std::vector<FrameRange>& spans, std::uint32_t num_frames,
                   std::uint32_t longest) {
   std::uint32_t next = 0;
-  for (const GofSpan& span : spans) {
+  for (const FrameRange& span : spans) {
     EXPECT_EQ(span.first, next);
     EXPECT_GE(span.count, 1U);
     EXPECT_LE(span.count, longest);
@@ -63,7 +63,7 @@ TEST(EqualGofs, DifferByAFrameAtMost) {
       const auto spans = equal_gofs(num_frames, longest);
       expect_whole(spans, num_frames, longest);
       EXPECT_EQ(spans.size(), (num_frames + longest - 1) / longest);
-      for (const GofSpan& span : spans) {
+      for (const FrameRange& span : spans) {
         EXPECT_LE(span.count, num_frames / spans.size() + 1);
         EXPECT_GE(span.count, num_frames / spans.size());
       }
@@ -93,7 +93,7 @@ TEST(CheapestGofs, AreEqualIfCutsMakeNoDifference) {
   const auto spans = cheapest_gofs(source, 128, 0.05);
   ASSERT_TRUE(spans);
   ASSERT_EQ(spans->size(), 3U);
-  for (const GofSpan& span : *spans) EXPECT_EQ(span.count, 100U);
+  for (const FrameRange& span : *spans) EXPECT_EQ(span.count, 100U);
 }
 
 TEST(CheapestGofs, IsASingleGofIfTheSequenceIsShort) {

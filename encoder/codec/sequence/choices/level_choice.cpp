@@ -21,7 +21,7 @@ std::optional<InputError> choose_level(SequenceHeader& header, std::uint32_t lon
                     " frames (specification, Annex B); use a smaller --gof, or split the mesh"};
 }
 
-LevelNeeds::LevelNeeds(const EncodedGof& encoded)
+LevelNeeds::LevelNeeds(const EncodedSpan& encoded)
     : factors(encoded.num_factors),
       adaptive_values(encoded.adaptive_values),
       clusters(encoded.max_clusters),

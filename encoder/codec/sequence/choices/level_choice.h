@@ -6,7 +6,7 @@
 
 #include "common/codec/syntax/sequence_header.h"
 #include "encoder/codec/settings.h"
-#include "encoder/codec/spans/gof_coder.h"
+#include "encoder/codec/spans/span_coder.h"
 #include "encoder/meshes/frame_source.h"
 
 namespace rlpc {
@@ -24,7 +24,7 @@ struct LevelNeeds {
   std::uint32_t clusters = 0;
   std::uint32_t components = 0;
 
-  explicit LevelNeeds(const EncodedGof& encoded);
+  explicit LevelNeeds(const EncodedSpan& encoded);
   // Requirements of the clusters, bones and components set explicitly; a GOF may have fewer.
   explicit LevelNeeds(const EncoderSettings& settings);
   // Doubles each requirement, up to the limits of the highest level.

@@ -31,9 +31,9 @@ TEST(LevelChoice, IsTheLowestThatAllowsMeshAndGofs) {
   EXPECT_EQ(level_of(mesh(1, 0), 1, 3), 3U);
 }
 
-EncodedGof coded(std::uint64_t factors, std::size_t bytes, std::uint32_t clusters,
-                 std::uint32_t components) {
-  EncodedGof gof;
+EncodedSpan coded(std::uint64_t factors, std::size_t bytes, std::uint32_t clusters,
+                  std::uint32_t components) {
+  EncodedSpan gof;
   gof.units.push_back({UnitType::kGof, std::vector<std::uint8_t>(bytes)});
   gof.units.push_back({UnitType::kSlice, std::vector<std::uint8_t>(1)});
   gof.num_factors = factors;
@@ -65,7 +65,7 @@ TEST(LevelNeeds, IncludeTheCountsInTheSettings) {
 }
 
 TEST(LevelNeeds, DoubleUpToTheHighestLevel) {
-  const auto reserved = [](const EncodedGof& gof) {
+  const auto reserved = [](const EncodedSpan& gof) {
     return LevelNeeds(gof).with_reserve().level_from(1);
   };
   EXPECT_EQ(reserved(coded(pow2(22), 10, 128, 256)), 1U);

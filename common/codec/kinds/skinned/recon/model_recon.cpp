@@ -27,7 +27,7 @@ struct ValueRecon {
   std::span<std::int32_t> values;  // [num_vertices][factor]
 
   // Vertices that follow each other in the order or, within a layer above the base, any.
-  void vertices(const CodedMesh& mesh, std::span<const std::uint32_t> list) const {
+  void vertices(const OrderedMesh& mesh, std::span<const std::uint32_t> list) const {
     Vector<std::int64_t> predicted(bits.size());
     std::optional<VertexAdaptation> adaptation;
     if (weights != nullptr) adaptation.emplace(*weights);
@@ -68,7 +68,7 @@ struct ValueRecon {
 }  // namespace
 
 // 8.10.2 Spatial values
-Vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel& model,
+Vector<std::int32_t> recon_values(const OrderedMesh& mesh, const SkinnedModel& model,
                                   std::size_t group, int position_bits,
                                   const ValuePrediction& prediction, AdaptiveWeights* weights) {
   const FactorGroup factors = factor_group(model, group);
@@ -92,7 +92,7 @@ Vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel& mod
   return values;
 }
 
-Vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedModel& model) {
+Vector<Influences> complete_influences(const OrderedMesh& mesh, const SkinnedModel& model) {
   Vector<Influences> influences = model.influences;
   InfluencePrediction prediction(influences, static_cast<std::uint32_t>(model.bones.size()),
                                  model.weight_bits);
@@ -107,7 +107,7 @@ Vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedModel
   return influences;
 }
 
-ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
+ModelRecon::ModelRecon(const OrderedMesh& mesh, const SkinnedModel& model, int position_bits,
                        bool has_more_groups)
     : mesh_(mesh), position_bits_(position_bits) {
   const Vector<std::int32_t> rest = recon_rest(model);
@@ -120,7 +120,7 @@ ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int pos
   rest_ = {};
 }
 
-ModelRecon::ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
+ModelRecon::ModelRecon(const OrderedMesh& mesh, const SkinnedModel& model, int position_bits,
                        std::span<const std::int32_t> values)
     : mesh_(mesh), position_bits_(position_bits) {
   add_influences(model, recon_rest(model));

@@ -12,7 +12,7 @@
 #include "common/codec/kernels/component_sum.h"
 #include "common/codec/kernels/kernels.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/mesh_prediction/adaptive_weights.h"
 #include "common/codec/mesh_prediction/value_prediction.h"
 #include "common/memory/owned.h"
@@ -31,14 +31,14 @@ inline std::int64_t factor_difference(std::int32_t residual, int layer_step) {
 
 // 8.10.2 Spatial values of the factors of a group, [num_vertices][factors]; without residuals
 // of layers whose slices are absent. weights: null if no factor is adaptive.
-Vector<std::int32_t> recon_values(const CodedMesh& mesh, const SkinnedModel& model,
+Vector<std::int32_t> recon_values(const OrderedMesh& mesh, const SkinnedModel& model,
                                   std::size_t group, int position_bits,
                                   const ValuePrediction& prediction,
                                   AdaptiveWeights* weights = nullptr);
 
 // 8.14.1 AddAbsentInfluences( ): the influences of all vertices, predicted where the slice is
 // absent; [num_vertices].
-Vector<Influences> complete_influences(const CodedMesh& mesh, const SkinnedModel& model);
+Vector<Influences> complete_influences(const OrderedMesh& mesh, const SkinnedModel& model);
 
 class ModelRecon {
  public:
@@ -51,16 +51,16 @@ class ModelRecon {
 
   // The mesh must outlive it; the model is read only during the call. has_more_groups: whether
   // local_factors() will be called. Cannot fail.
-  ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
+  ModelRecon(const OrderedMesh& mesh, const SkinnedModel& model, int position_bits,
              bool has_more_groups);
   // The same where the spatial values of all trajectories are known,
   // [num_vertices][trajectory].
-  ModelRecon(const CodedMesh& mesh, const SkinnedModel& model, int position_bits,
+  ModelRecon(const OrderedMesh& mesh, const SkinnedModel& model, int position_bits,
              std::span<const std::int32_t> values);
   ModelRecon(const ModelRecon&) = delete;
   ModelRecon& operator=(const ModelRecon&) = delete;
 
-  const CodedMesh& mesh() const { return mesh_; }
+  const OrderedMesh& mesh() const { return mesh_; }
   std::size_t num_vertices() const { return mesh_.num_vertices(); }
   int position_bits() const { return position_bits_; }
   std::size_t num_tiles() const { return first_run_.size() - 1; }
@@ -88,7 +88,7 @@ class ModelRecon {
   std::shared_ptr<const SpatialFactors> recon_factors(const SkinnedModel& model,
                                                       AdaptiveWeights* adaptive) const;
 
-  const CodedMesh& mesh_;
+  const OrderedMesh& mesh_;
   int position_bits_;
   Vector<RunRange> runs_;
   Vector<std::size_t> first_run_;  // [tiles + 1]

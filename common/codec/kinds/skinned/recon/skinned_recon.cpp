@@ -55,7 +55,7 @@ TemporalFactor temporal_factor(const Trajectory& trajectory, int track_levels) {
 }  // namespace
 
 // 8.14.3 Positions
-SkinnedRecon::SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int position_bits,
+SkinnedRecon::SkinnedRecon(const OrderedMesh& mesh, const SkinnedGof& gof, int position_bits,
                            const Kernels& loops)
     : SkinnedRecon(make_shared_owned<ModelRecon>(mesh, gof, position_bits, false), gof, loops) {
 }

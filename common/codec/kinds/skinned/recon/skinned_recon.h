@@ -13,7 +13,7 @@
 #include "common/codec/kinds/skinned/recon/model_recon.h"
 #include "common/codec/kinds/skinned/recon/trajectory_prediction.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/mesh/skeleton.h"
 #include "common/memory/owned.h"
 
@@ -31,7 +31,7 @@ class SkinnedRecon {
  public:
   // Prepares a GOF with vertices of its own. The mesh must outlive the object; the GOF is read
   // only during the call. Cannot fail.
-  SkinnedRecon(const CodedMesh& mesh, const SkinnedGof& gof, int position_bits,
+  SkinnedRecon(const OrderedMesh& mesh, const SkinnedGof& gof, int position_bits,
                const Kernels& loops = kernels().back());
   // Prepares a GOF with the vertices of a skinned model.
   SkinnedRecon(std::shared_ptr<const ModelRecon> model, const SkinnedGof& gof,

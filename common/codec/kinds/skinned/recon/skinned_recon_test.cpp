@@ -186,7 +186,7 @@ class TextRecon {
 
   const RandomSkinnedGof& from_;
   const SkinnedGof& gof_;
-  CodedMesh mesh_;
+  OrderedMesh mesh_;
   std::vector<BoneMotion> bones_;
   std::optional<GeometryWeights> weights_;
   std::vector<FilterOfText> filters_;  // of each vertex
@@ -204,7 +204,7 @@ TEST(RandomSkinnedGofs, ReconstructAsSpecified) {
     if (from.gof.rest.order_flag) ++in_order;
     if (from.gof.slice_layers.back() < from.gof.layer_group_size.size()) ++absent;
     const TextRecon text(from);
-    const CodedMesh mesh = from.coded_mesh();
+    const OrderedMesh mesh = from.coded_mesh();
     const SkinnedRecon recon(mesh, from.gof, from.header.position_bits);
     ASSERT_EQ(recon.num_frames(), from.gof.num_frames);
     std::vector<std::int32_t> positions(3 * std::size_t{from.header.num_vertices});
@@ -226,7 +226,7 @@ TEST(SkinnedRecon, HandsOverItsBones) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
     const RandomSkinnedGof from(seed, {});
-    const CodedMesh mesh = from.coded_mesh();
+    const OrderedMesh mesh = from.coded_mesh();
     const SkinnedRecon recon(mesh, from.gof, from.header.position_bits);
     const Skeleton skeleton = recon.skeleton();
     const std::vector<Influences> influences = complete_influences(mesh, from.gof);
@@ -257,7 +257,7 @@ TEST(SkinnedRecon, DoesNotDependOnThreads) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
     const RandomSkinnedGof from(seed, {.max_vertices = 500, .max_frames = 1});
-    const CodedMesh mesh = from.coded_mesh();
+    const OrderedMesh mesh = from.coded_mesh();
     const bool adapts = from.gof.weights.num_adaptive_factors > 0;
     for (std::uint32_t layer = 0; layer < mesh.num_layers() && adapts; ++layer) {
       if (mesh.vertices_of_layers(layer, layer + 1).size() > 32) ++shared;
@@ -280,7 +280,7 @@ TEST(RecoveredValues, OfRestPositionsAreAsSpecified) {
     const RandomSkinnedGof from(seed,
                                 {.max_vertices = 120, .max_frames = 1, .rest_order = false});
     const TextRecon text(from);
-    const CodedMesh mesh = from.coded_mesh();
+    const OrderedMesh mesh = from.coded_mesh();
     const auto values =
         recon_values(mesh, from.gof, 0, from.header.position_bits, {mesh, true, nullptr});
     for (std::uint32_t v = 0; v < from.header.num_vertices; ++v) {
@@ -297,7 +297,7 @@ TEST(ValuePredictions, UseTheLatestParallelogramOrTheMeanOfAll) {
   const VertexLayers layers = make_layers(11, triangles);
   const std::vector<std::int32_t> values{1, 20, 300, -7, 5000, 11, 60, 0, 0, 900, 0};
   const auto predicted = [&](Prediction p, bool is_rest) {
-    const CodedMesh mesh(p, topology, layers);
+    const OrderedMesh mesh(p, topology, layers);
     std::array<std::int64_t, 1> prediction{};
     ValuePrediction(mesh, is_rest, nullptr).predict(10, values, prediction);
     return prediction[0];
@@ -323,7 +323,7 @@ RandomSkinnedGof still(unsigned seed) {
 TEST(SkinnedRecon, RepeatsTheRestShapeWithoutMotion) {
   for (unsigned seed = 1; seed <= 50; ++seed) {
     const RandomSkinnedGof from = still(seed);
-    const CodedMesh mesh = from.coded_mesh();
+    const OrderedMesh mesh = from.coded_mesh();
     const auto rest = recon_values(mesh, from.gof, 0, 16, {mesh, true, nullptr});
     const SkinnedRecon recon(mesh, from.gof, 16);
     std::vector<std::int32_t> positions(rest.size());
@@ -342,7 +342,7 @@ TEST(SkinnedRecon, PredictsVerticesOfAbsentLayers) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     const RandomSkinnedGof from = still(seed);
     if (from.gof.prediction != Prediction::kLayers) continue;
-    const CodedMesh mesh = from.coded_mesh();
+    const OrderedMesh mesh = from.coded_mesh();
     std::uint32_t present = 0;
     for (std::uint32_t j = 0; j < from.gof.slice_layers[0]; ++j)
       present += from.gof.layer_group_size[j];

@@ -60,7 +60,7 @@ double expected_cost(const ResidualSpectrum& spectrum, std::uint32_t num_vertice
   return cost;
 }
 
-std::vector<double> unsteadiness(const GofFrames& frames) {
+std::vector<double> unsteadiness(const SpanFrames& frames) {
   const std::uint32_t stride = (frames.num_vertices + kProbeVertices - 1) / kProbeVertices;
   std::vector<double> result;
   for (std::uint32_t f = 1; f < frames.num_frames; ++f) {
@@ -82,7 +82,7 @@ std::vector<double> unsteadiness(const GofFrames& frames) {
 // The more vertices follow a bone, the finer its steps are. Each of the six values of a pose
 // takes half a bit per doubling of the square of what prediction leaves, relative to the error
 // of its quantiser, step^2 / 12.
-double expected_bone_bits(const std::vector<double>& unsteady, const GofFrames& frames,
+double expected_bone_bits(const std::vector<double>& unsteady, const SpanFrames& frames,
                           std::size_t num_bones, double step) {
   constexpr double kValuesPerPose = 6.0;  // fixed: of a rotation and an origin
   if (unsteady.empty()) return 0.0;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "encoder/codec/kinds/skinned/fit/bone_solver.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -27,14 +27,14 @@ double expected_cost(const ResidualSpectrum& spectrum, std::uint32_t num_vertice
 
 // Distances, in grid units, between the positions of a sample of vertices and their linear
 // extrapolation from the two frames before; for each frame except the first.
-std::vector<double> unsteadiness(const GofFrames& frames);
+std::vector<double> unsteadiness(const SpanFrames& frames);
 
 // Expected bits of the pivot and of all poses of one bone.
 //
 //   unsteady   unsteadiness() of the frames
 //   num_bones  number of bones in the GOF, at least 1
 //   step       quantiser step, grid units, above 0
-double expected_bone_bits(const std::vector<double>& unsteady, const GofFrames& frames,
+double expected_bone_bits(const std::vector<double>& unsteady, const SpanFrames& frames,
                           std::size_t num_bones, double step);
 
 }  // namespace rlpc

@@ -11,8 +11,8 @@ namespace {
 
 // Vertices on a line that all move by offset(frame).
 template <typename Offset>
-GofFrames moving(std::uint32_t num_vertices, std::uint32_t num_frames, const Offset& offset) {
-  GofFrames frames{num_vertices, num_frames, {}};
+SpanFrames moving(std::uint32_t num_vertices, std::uint32_t num_frames, const Offset& offset) {
+  SpanFrames frames{num_vertices, num_frames, {}};
   for (std::uint32_t f = 0; f < num_frames; ++f) {
     for (std::uint32_t v = 0; v < num_vertices; ++v) {
       frames.xyz.insert(frames.xyz.end(), {10.0 * v, offset(f), 0.0});
@@ -24,7 +24,7 @@ GofFrames moving(std::uint32_t num_vertices, std::uint32_t num_frames, const Off
 TEST(Unsteadiness, IsTheDistanceFromLinearExtrapolation) {
   // Frame 1 is predicted by frame 0: 3 - 0. Frames 2 and 3 are extrapolated: 6 - 6, 4 - 9.
   const std::vector<double> offsets{0.0, 3.0, 6.0, 4.0};
-  const GofFrames frames = moving(2, 4, [&](std::uint32_t f) { return offsets[f]; });
+  const SpanFrames frames = moving(2, 4, [&](std::uint32_t f) { return offsets[f]; });
   EXPECT_EQ(unsteadiness(frames), (std::vector<double>{3.0, 3.0, 0.0, 0.0, 5.0, 5.0}));
 }
 
@@ -37,7 +37,7 @@ TEST(Unsteadiness, IsMeasuredAtAFewVertices) {
 
 TEST(ExpectedBoneBits, GrowWithUnsteadinessFollowersAndFinerSteps) {
   const auto bits = [](double size, std::uint32_t vertices, std::size_t bones, double step) {
-    const GofFrames frames =
+    const SpanFrames frames =
         moving(vertices, 50, [&](std::uint32_t f) { return size * std::sin(f); });
     return expected_bone_bits(unsteadiness(frames), frames, bones, step);
   };
@@ -50,8 +50,8 @@ TEST(ExpectedBoneBits, GrowWithUnsteadinessFollowersAndFinerSteps) {
 }
 
 TEST(ExpectedBoneBits, ABoneAtRestCostsNothing) {
-  const GofFrames frames = moving(100, 200, [](std::uint32_t) { return 7.0; });
-  const GofFrames one = moving(100, 1, [](std::uint32_t) { return 7.0; });
+  const SpanFrames frames = moving(100, 200, [](std::uint32_t) { return 7.0; });
+  const SpanFrames one = moving(100, 1, [](std::uint32_t) { return 7.0; });
   EXPECT_EQ(expected_bone_bits(unsteadiness(frames), frames, 5, 1.0), 0.0);
   EXPECT_EQ(expected_bone_bits(unsteadiness(one), one, 5, 1.0), 0.0);
 }

@@ -29,7 +29,7 @@ std::vector<std::uint32_t> sample_frames(std::uint32_t num_frames, std::uint32_t
   return chosen;
 }
 
-std::vector<Vec3d> centres(const GofFrames& frames) {
+std::vector<Vec3d> centres(const SpanFrames& frames) {
   std::vector<Vec3d> result(frames.num_frames, Vec3d::Zero());
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
     for (std::uint32_t v = 0; v < frames.num_vertices; ++v) {
@@ -118,7 +118,7 @@ void put_in_tree_order(const std::vector<TreeBone>& tree, const BoneMotions& mot
 
 }  // namespace
 
-BoneFit::BoneFit(const GofFrames& frames, std::span<const Triangle> triangles,
+BoneFit::BoneFit(const SpanFrames& frames, std::span<const Triangle> triangles,
                  const BoneFitOptions& options)
     : frames_(frames),
       options_(options),

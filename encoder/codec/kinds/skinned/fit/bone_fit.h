@@ -13,8 +13,8 @@
 #include "encoder/codec/kinds/skinned/fit/bone_poses.h"
 #include "encoder/codec/kinds/skinned/fit/bone_solver.h"
 #include "encoder/codec/kinds/skinned/fit/rig.h"
-#include "encoder/codec/spans/gof_frames.h"
 #include "encoder/codec/spans/sample_size.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -34,7 +34,7 @@ struct BoneFitOptions {
 class BoneFit {
  public:
   // Keeps a reference to the frames: at least one, with at least one vertex.
-  BoneFit(const GofFrames& frames, std::span<const Triangle> triangles,
+  BoneFit(const SpanFrames& frames, std::span<const Triangle> triangles,
           const BoneFitOptions& options);
   BoneFit(const BoneFit&) = delete;
   BoneFit& operator=(const BoneFit&) = delete;
@@ -78,7 +78,7 @@ class BoneFit {
   BoneMotions fit_frames(const BoneMotions& motions, const SkinMoments& moments,
                          const Rig& rig) const;
 
-  const GofFrames& frames_;
+  const SpanFrames& frames_;
   BoneFitOptions options_;
   std::vector<Vec3d> centre_;  // [num_frames], mean vertex; the sample is relative to it
   std::vector<std::uint32_t> chosen_;  // the frames of the sample

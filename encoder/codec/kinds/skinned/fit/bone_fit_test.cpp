@@ -22,7 +22,7 @@ Point turned(const Point& p, double about_z, double about_x) {
 }
 
 struct Animation {
-  GofFrames frames;
+  SpanFrames frames;
   std::vector<Triangle> triangles;
 };
 
@@ -96,7 +96,7 @@ Rig fit_bones(const Animation& a, const Options& options) {
   return fit.rig(fit.state(), options.max_influences, options.step);
 }
 
-double rms_error(const GofFrames& frames, const Rig& fit) {
+double rms_error(const SpanFrames& frames, const Rig& fit) {
   double sum = 0.0;
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
     for (std::uint32_t v = 0; v < frames.num_vertices; ++v) {

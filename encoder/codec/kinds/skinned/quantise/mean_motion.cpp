@@ -64,7 +64,7 @@ std::span<const MeanMotion> MeanMotions::of(const Influences& influences, int we
   return mean_;
 }
 
-void write_displacement(const GofFrames& frames, std::span<const std::uint32_t> chosen,
+void write_displacement(const SpanFrames& frames, std::span<const std::uint32_t> chosen,
                         std::uint32_t v, std::span<const MeanMotion> motion, const Point& rest,
                         double* row) {
   const std::size_t num_frames = chosen.size();

@@ -11,7 +11,7 @@
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "encoder/codec/kinds/skinned/fit/rig.h"
 #include "encoder/codec/kinds/skinned/tracks/track_coding.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -51,7 +51,7 @@ class MeanMotions {
 //   chosen  the frames
 //   rest    rest position, grid units
 //   row     [3][frame]
-void write_displacement(const GofFrames& frames, std::span<const std::uint32_t> chosen,
+void write_displacement(const SpanFrames& frames, std::span<const std::uint32_t> chosen,
                         std::uint32_t v, std::span<const MeanMotion> motion, const Point& rest,
                         double* row);
 

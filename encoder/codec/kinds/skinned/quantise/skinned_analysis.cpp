@@ -14,7 +14,7 @@
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/math/small_system.h"
 #include "encoder/codec/rest/rest_coding.h"
-#include "encoder/codec/spans/gof_coder.h"
+#include "encoder/codec/spans/span_coder.h"
 
 namespace rlpc {
 namespace {
@@ -81,7 +81,7 @@ namespace {
 
 class SkinnedAnalyser {
  public:
-  SkinnedAnalyser(const CodedMesh& mesh, int position_bits, const GofFrames& frames,
+  SkinnedAnalyser(const OrderedMesh& mesh, int position_bits, const SpanFrames& frames,
                   const Rig& rig, const SkinnedSettings& settings, double step,
                   const SkinnedAnalysis* before)
       : mesh_(mesh),
@@ -245,7 +245,7 @@ class SkinnedAnalyser {
       }
     }
     const bool counterparts = settings_.rest == RestTools::kCounterparts && !settings_.draft;
-    CodedRest coded =
+    RestEncoding coded =
         code_rest_in_order(mesh_, rounded, model.rest_step, position_bits_,
                            {.few = settings_.draft, .counterparts = counterparts});
     if (!(coded.cost < rest_cost_in_layers(mesh_, rounded, model.rest_step,
@@ -304,9 +304,9 @@ class SkinnedAnalyser {
     return rest;
   }
 
-  const CodedMesh& mesh_;
+  const OrderedMesh& mesh_;
   int position_bits_;
-  const GofFrames& frames_;
+  const SpanFrames& frames_;
   const Rig& rig_;
   const SkinnedSettings& settings_;
   double step_;
@@ -317,8 +317,8 @@ class SkinnedAnalyser {
 
 }  // namespace
 
-SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
-                                    const GofFrames& frames, const Rig& rig,
+SkinnedAnalysis analyse_skinned_gof(const OrderedMesh& mesh, int position_bits,
+                                    const SpanFrames& frames, const Rig& rig,
                                     const SkinnedSettings& settings, double step,
                                     const SkinnedAnalysis* before) {
   return SkinnedAnalyser(mesh, position_bits, frames, rig, settings, step, before).analyse();

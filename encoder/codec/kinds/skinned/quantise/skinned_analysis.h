@@ -9,12 +9,12 @@
 
 #include "common/codec/kinds/skinned/recon/bones.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "encoder/codec/kinds/skinned/fit/rig.h"
 #include "encoder/codec/kinds/skinned/tracks/track_coding.h"
 #include "encoder/codec/math/principal_components.h"
 #include "encoder/codec/settings.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -73,8 +73,8 @@ struct SkinnedAnalysis {
 //
 //   before  an analysis of the same rig with other tools, for the same step or one nearby, or
 //           null: its principal components and, in a draft, its bones are copied
-SkinnedAnalysis analyse_skinned_gof(const CodedMesh& mesh, int position_bits,
-                                    const GofFrames& frames, const Rig& rig,
+SkinnedAnalysis analyse_skinned_gof(const OrderedMesh& mesh, int position_bits,
+                                    const SpanFrames& frames, const Rig& rig,
                                     const SkinnedSettings& settings, double step,
                                     const SkinnedAnalysis* before = nullptr);
 

@@ -96,7 +96,7 @@ double expected_spatial_bits(const SkinnedAnalysis& analysis, std::size_t count,
 // Adds trajectories to a span. Coarsens the steps if values do not fit their widths.
 // shared: the skinned model of a local component group, or null; if values do not fit its
 // fraction bits, there are no trajectories.
-CodedTrajectories code_trajectories(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+CodedTrajectories code_trajectories(const OrderedMesh& mesh, const SkinnedAnalysis& analysis,
                                     const SkinnedSettings& settings, double step,
                                     const ModelRecon* shared, CodedSpan& coded) {
   constexpr double kReserve = 1.02;  // fixed: the next try fits
@@ -163,7 +163,7 @@ double expected_squared_error(const SkinnedAnalysis& analysis, double step) {
   return error;
 }
 
-CodedSpan code_skinned_span(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+CodedSpan code_skinned_span(const OrderedMesh& mesh, const SkinnedAnalysis& analysis,
                             const SkinnedSettings& settings, double step) {
   CodedSpan coded{analysis.model, analysis.gofs};
   SkinnedModel& model = coded.model;
@@ -174,7 +174,7 @@ CodedSpan code_skinned_span(const CodedMesh& mesh, const SkinnedAnalysis& analys
   return coded;
 }
 
-LocalGroup code_local_group(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+LocalGroup code_local_group(const OrderedMesh& mesh, const SkinnedAnalysis& analysis,
                             const ModelRecon& shared, SkinnedSettings settings, double step) {
   settings.component_groups = 1;
   CodedSpan coded{analysis.model, analysis.gofs};
@@ -204,7 +204,7 @@ SkinnedGof merge_into_gof(CodedSpan coded) {
 }
 
 void use_model(std::shared_ptr<const SkinnedModel> model, SkinnedGof& gof) {
-  gof.kind = GofKind::kTracks;
+  gof.kind = GofKind::kSharedRig;
   gof.fraction_bits = model->fraction_bits;
   gof.weight_bits = model->weight_bits;
   gof.prediction = model->prediction;

@@ -9,7 +9,7 @@
 
 #include "common/codec/kinds/skinned/recon/model_recon.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "encoder/codec/kinds/skinned/quantise/skinned_analysis.h"
 
 namespace rlpc {
@@ -33,7 +33,7 @@ struct CodedSpan {
 };
 
 // Quantises the trajectories and completes the span. step: quantiser step, grid units.
-CodedSpan code_skinned_span(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+CodedSpan code_skinned_span(const OrderedMesh& mesh, const SkinnedAnalysis& analysis,
                             const SkinnedSettings& settings, double step);
 
 // The only GOF of a span, with vertices of its own.
@@ -48,7 +48,7 @@ struct LocalGroup {
 //
 //   analysis  of a single GOF: what its skinned model leaves; model: that, without trajectories
 //   shared    the skinned model
-LocalGroup code_local_group(const CodedMesh& mesh, const SkinnedAnalysis& analysis,
+LocalGroup code_local_group(const OrderedMesh& mesh, const SkinnedAnalysis& analysis,
                             const ModelRecon& shared, SkinnedSettings settings, double step);
 // Adds a local component group, unless it is empty, to a GOF of tracks.
 void add_local_group(LocalGroup group, SkinnedGof& gof);

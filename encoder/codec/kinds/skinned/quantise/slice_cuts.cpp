@@ -57,7 +57,7 @@ SliceCuts choose_slice_cuts(const SkinnedSettings& settings, double bits, std::s
   return cuts;
 }
 
-void cut_slices(const CodedMesh& mesh, const SkinnedSettings& settings, const SliceCuts& cuts,
+void cut_slices(const OrderedMesh& mesh, const SkinnedSettings& settings, const SliceCuts& cuts,
                 std::span<const std::int32_t> residual, SkinnedModel& model) {
   model.layer_group_size =
       layer_group_sizes(mesh, cuts.num_layer_groups, settings.layer_groups);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/codec/kinds/skinned/skinned_gof.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "encoder/codec/kinds/skinned/quantise/skinned_analysis.h"
 
 namespace rlpc {
@@ -29,7 +29,7 @@ SliceCuts choose_slice_cuts(const SkinnedSettings& settings, double bits, std::s
 //
 //   residual  [num_vertices][trajectory of the GOF]
 //   gof       its trajectories are set; layer groups, component groups and slices are added
-void cut_slices(const CodedMesh& mesh, const SkinnedSettings& settings, const SliceCuts& cuts,
+void cut_slices(const OrderedMesh& mesh, const SkinnedSettings& settings, const SliceCuts& cuts,
                 std::span<const std::int32_t> residual, SkinnedModel& model);
 
 }  // namespace rlpc

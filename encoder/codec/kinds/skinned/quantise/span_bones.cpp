@@ -5,9 +5,9 @@
 
 namespace rlpc {
 
-std::vector<SkinnedGof> gofs_of_span(const GofFrames& frames, int track_levels) {
+std::vector<SkinnedGof> gofs_of_span(const SpanFrames& frames, int track_levels) {
   std::vector<SkinnedGof> gofs;
-  for (const GofSpan& span : frames.gofs()) {
+  for (const FrameRange& span : frames.gofs()) {
     SkinnedGof& gof = gofs.emplace_back();
     gof.first_frame = frames.first_frame + span.first;
     gof.num_frames = span.count;

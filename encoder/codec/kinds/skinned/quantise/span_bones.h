@@ -7,12 +7,12 @@
 #include "common/codec/kinds/skinned/recon/bones.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "encoder/codec/kinds/skinned/tracks/track_coding.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
 // The GOFs of a span, without bones and trajectories.
-std::vector<SkinnedGof> gofs_of_span(const GofFrames& frames, int track_levels);
+std::vector<SkinnedGof> gofs_of_span(const SpanFrames& frames, int track_levels);
 
 class SpanBones {
  public:

@@ -10,7 +10,7 @@
 namespace rlpc {
 namespace {
 
-void add_differences(const CodedMesh& mesh, const ComponentsByRow& pc, std::uint32_t v,
+void add_differences(const OrderedMesh& mesh, const ComponentsByRow& pc, std::uint32_t v,
                      std::span<float> difference, std::span<float> sum) {
   const std::size_t width = difference.size();
   const float* of_v = pc.spatial.data() + v * width;
@@ -28,7 +28,7 @@ void add_differences(const CodedMesh& mesh, const ComponentsByRow& pc, std::uint
 
 // Differences of a vertex and the mean of those that predict it, squared, averaged over the
 // vertex and its ring: residuals are coded by what these are nearby.
-std::vector<float> find_spatial_left(const CodedMesh& mesh, const ComponentsByRow& pc) {
+std::vector<float> find_spatial_left(const OrderedMesh& mesh, const ComponentsByRow& pc) {
   const std::size_t width = pc.temporal.size();
   const std::uint32_t n = mesh.num_vertices();
   const std::uint32_t places = std::min(n, kProbeVertices);

@@ -3,13 +3,13 @@
 
 #include <vector>
 
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "encoder/codec/math/principal_components.h"
 
 namespace rlpc {
 
 // What prediction leaves of the spatial factors near each of some vertices, mean square:
 // [vertex of a sample][component].
-std::vector<float> find_spatial_left(const CodedMesh& mesh, const ComponentsByRow& pc);
+std::vector<float> find_spatial_left(const OrderedMesh& mesh, const ComponentsByRow& pc);
 
 }  // namespace rlpc

@@ -78,7 +78,7 @@ class FittedFactors {
 };
 
 // The adaptive weights before the first trajectory; none if there are none.
-std::optional<AdaptiveWeights> start_weights(const CodedMesh& mesh, const SkinnedModel& model,
+std::optional<AdaptiveWeights> start_weights(const OrderedMesh& mesh, const SkinnedModel& model,
                                              const SkinnedAnalysis& analysis,
                                              const std::optional<GeometryWeights>& weights,
                                              const ModelRecon* shared) {
@@ -104,7 +104,7 @@ struct Pass {
 
 class SpatialCoder {
  public:
-  SpatialCoder(const CodedMesh& mesh, const SkinnedModel& model, FittedFactors factors,
+  SpatialCoder(const OrderedMesh& mesh, const SkinnedModel& model, FittedFactors factors,
                const ValuePrediction& prediction, AdaptiveWeights* adaptive, std::size_t count,
                Rounding rounding, double step)
       : mesh_(mesh),
@@ -213,7 +213,7 @@ class SpatialCoder {
     return rounded_residual(wanted, rounding_ == Rounding::kNearest ? 0.5 : 0.5 - kDeadZone);
   }
 
-  const CodedMesh& mesh_;
+  const OrderedMesh& mesh_;
   const SkinnedModel& model_;
   FittedFactors factors_;
   const ValuePrediction& prediction_;
@@ -227,7 +227,7 @@ class SpatialCoder {
 
 }  // namespace
 
-SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedModel& model,
+SpatialValues code_spatial_values(const OrderedMesh& mesh, const SkinnedModel& model,
                                   const SkinnedAnalysis& analysis,
                                   const TemporalValues& temporal,
                                   std::span<const std::size_t> group_end,

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/codec/kinds/skinned/recon/model_recon.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "encoder/codec/kinds/skinned/quantise/skinned_analysis.h"
 #include "encoder/codec/kinds/skinned/quantise/temporal_values.h"
 
@@ -26,7 +26,7 @@ struct SpatialValues {
 //   group_end  ends of the component groups, in trajectories
 //   shared     the skinned model of a local component group; null: there is none
 //   step       quantiser step, grid units
-SpatialValues code_spatial_values(const CodedMesh& mesh, const SkinnedModel& model,
+SpatialValues code_spatial_values(const OrderedMesh& mesh, const SkinnedModel& model,
                                   const SkinnedAnalysis& analysis,
                                   const TemporalValues& temporal,
                                   std::span<const std::size_t> group_end,

@@ -10,7 +10,7 @@
 #include "encoder/codec/kinds/skinned/quantise/mean_motion.h"
 #include "encoder/codec/math/principal_components.h"
 #include "encoder/codec/math/symmetric_system.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -40,7 +40,7 @@ class ModelFactors {
 class ModelRemainder {
  public:
   // motions: of the bones in the chosen frames. Keeps references to model, factors and frames.
-  ModelRemainder(const KeptModel& kept, const ModelFactors& factors, const GofFrames& frames,
+  ModelRemainder(const KeptModel& kept, const ModelFactors& factors, const SpanFrames& frames,
                  std::vector<std::uint32_t> chosen, MotionsOfBones motions)
       : kept_(kept),
         factors_(factors),
@@ -59,7 +59,7 @@ class ModelRemainder {
 
   const KeptModel& kept_;
   const ModelFactors& factors_;
-  const GofFrames& frames_;
+  const SpanFrames& frames_;
   std::vector<std::uint32_t> chosen_;
   MotionsOfBones motions_;
   std::vector<double> negative_;  // of the temporal values; empty: none

@@ -10,12 +10,12 @@
 namespace rlpc {
 namespace {
 
-Vec3d vertex_of(const GofFrames& frames, std::uint32_t frame, std::uint32_t vertex) {
+Vec3d vertex_of(const SpanFrames& frames, std::uint32_t frame, std::uint32_t vertex) {
   const double* p = frames.at(frame, vertex);
   return {p[0], p[1], p[2]};
 }
 
-Vec3d centre_of(const GofFrames& frames, std::uint32_t frame) {
+Vec3d centre_of(const SpanFrames& frames, std::uint32_t frame) {
   Vec3d sum = Vec3d::Zero();
   for (std::uint32_t v = 0; v < frames.num_vertices; ++v) sum += vertex_of(frames, frame, v);
   return sum / frames.num_vertices;
@@ -67,7 +67,7 @@ PoseFit::PoseFit(const SkinnedModel& model,
 }
 
 // Each bone moves as the vertices that follow it most, or else as its parent.
-PoseFit::Motions PoseFit::rigid_motions(const GofFrames& frames, std::uint32_t frame,
+PoseFit::Motions PoseFit::rigid_motions(const SpanFrames& frames, std::uint32_t frame,
                                         const Vec3d& centre) const {
   const std::size_t n = model_.bones.size();
   std::vector<MotionFit> fits(n);
@@ -128,7 +128,7 @@ void PoseFit::keep_joints(std::span<const Motion> targets, const Vec3d& centre,
 }
 
 // Consecutive frames, each starting from the one before.
-void PoseFit::fit_some(const GofFrames& frames, std::span<const std::uint32_t> chosen,
+void PoseFit::fit_some(const SpanFrames& frames, std::span<const std::uint32_t> chosen,
                        std::span<Motions> motions) const {
   std::vector<Vec3d> centres;
   for (const std::uint32_t f : chosen) centres.push_back(centre_of(frames, f));
@@ -150,7 +150,7 @@ void PoseFit::fit_some(const GofFrames& frames, std::span<const std::uint32_t> c
   }
 }
 
-std::vector<std::vector<WantedPose>> PoseFit::fit(const GofFrames& frames,
+std::vector<std::vector<WantedPose>> PoseFit::fit(const SpanFrames& frames,
                                                   std::span<const std::uint32_t> chosen) const {
   constexpr std::size_t kTogether = 16;  // fixed: frames of a pass
   std::vector<Motions> motions(chosen.size());

@@ -9,7 +9,7 @@
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "encoder/codec/kinds/skinned/fit/bone_poses.h"
 #include "encoder/codec/kinds/skinned/tracks/track_coding.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -20,15 +20,15 @@ class PoseFit {
 
   // The poses of all bones in some frames, [bone][frame], as joints and bones that do not
   // rotate allow. Quaternions keep their sign from frame to frame.
-  std::vector<std::vector<WantedPose>> fit(const GofFrames& frames,
+  std::vector<std::vector<WantedPose>> fit(const SpanFrames& frames,
                                            std::span<const std::uint32_t> chosen) const;
 
  private:
   using Motions = std::vector<Motion>;  // [bone]
 
-  Motions rigid_motions(const GofFrames& frames, std::uint32_t frame,
+  Motions rigid_motions(const SpanFrames& frames, std::uint32_t frame,
                         const Vec3d& centre) const;
-  void fit_some(const GofFrames& frames, std::span<const std::uint32_t> chosen,
+  void fit_some(const SpanFrames& frames, std::span<const std::uint32_t> chosen,
                 std::span<Motions> motions) const;
   void keep_joints(std::span<const Motion> targets, const Vec3d& centre,
                    Motions& motions) const;

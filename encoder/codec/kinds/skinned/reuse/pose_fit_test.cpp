@@ -54,8 +54,8 @@ struct Arm {
     return list;
   }
 
-  GofFrames moved(const std::vector<std::vector<WantedPose>>& poses) const {
-    GofFrames frames{kVertices, static_cast<std::uint32_t>(poses[0].size()), {}, 0, 1, false};
+  SpanFrames moved(const std::vector<std::vector<WantedPose>>& poses) const {
+    SpanFrames frames{kVertices, static_cast<std::uint32_t>(poses[0].size()), {}, 0, 1, false};
     MotionsOfBones motions;
     for (std::size_t b = 0; b < 2; ++b) {
       motions.push_back(motions_of(model.bones[b].pivot, poses[b]));
@@ -98,7 +98,7 @@ void expect_near(const std::vector<std::vector<WantedPose>>& found,
 TEST(PoseFit, FindsThePosesOfAllBones) {
   const Arm arm;
   const auto wanted = arm.poses(20, 700.0);
-  const GofFrames frames = arm.moved(wanted);
+  const SpanFrames frames = arm.moved(wanted);
   const PoseFit fit(arm.model, arm.rest);
   const auto found = fit.fit(frames, numbers_from(0, 20));
   expect_near(found, wanted, 16.0);
@@ -110,7 +110,7 @@ TEST(PoseFit, FindsThePosesOfAllBones) {
 
 TEST(PoseFit, QuaternionsKeepTheirSign) {
   const Arm arm;
-  const GofFrames frames = arm.moved(arm.poses(20, 0.0));
+  const SpanFrames frames = arm.moved(arm.poses(20, 0.0));
   for (const auto& of_bone : PoseFit(arm.model, arm.rest).fit(frames, numbers_from(0, 20))) {
     for (std::size_t f = 1; f < of_bone.size(); ++f) {
       double same = 0.0;
@@ -129,7 +129,7 @@ TEST(PoseFit, PinnedBonesKeepTheirJoint) {
   expect_near(PoseFit(arm.model, arm.rest).fit(arm.moved(wanted), numbers_from(0, 20)), wanted,
               16.0);
   // Where the joint opens, the child still begins where the parent ends.
-  const GofFrames open = arm.moved(arm.poses(20, 900.0));
+  const SpanFrames open = arm.moved(arm.poses(20, 900.0));
   const auto found = PoseFit(arm.model, arm.rest).fit(open, numbers_from(0, 20));
   const auto motions = motions_of(arm.model.bones[0].pivot, found[0]);
   for (std::size_t f = 0; f < 20; ++f) {

@@ -27,7 +27,7 @@ namespace {
 
 class SpanReuse {
  public:
-  SpanReuse(const SkinnedContext& context, const KeptModel& kept, const GofFrames& frames,
+  SpanReuse(const SkinnedContext& context, const KeptModel& kept, const SpanFrames& frames,
             double step)
       : context_(context),
         kept_(kept),
@@ -45,7 +45,7 @@ class SpanReuse {
   }
 
   double expected_cost() const;
-  EncodedGof encode();
+  EncodedSpan encode();
 
  private:
   void code_bones();
@@ -57,16 +57,16 @@ class SpanReuse {
   std::optional<CodedTrajectory> code_trajectory(std::size_t l, std::span<const double> wanted,
                                                  const SpanTracks& tracks) const;
   int eighths_of(std::size_t l, double largest) const;
-  LocalGroup local_group(const GofSpan& span) const;
+  LocalGroup local_group(const FrameRange& span) const;
   // What is left in frames of the span; temporal values as decoded.
-  ModelRemainder remainder(const GofSpan& span, bool has_temporal) const;
+  ModelRemainder remainder(const FrameRange& span, bool has_temporal) const;
   double least_energy() const { return step_ * step_ / 12.0 * frames_.num_vertices; }
 
   const SkinnedContext& context_;
   const KeptModel& kept_;
   const SkinnedModel& model_;
-  const CodedMesh& mesh_;
-  const GofFrames& frames_;
+  const OrderedMesh& mesh_;
+  const SpanFrames& frames_;
   double step_;
   SkinnedSettings settings_;  // max_trajectories: of local component groups
   PoseFit poses_;
@@ -98,8 +98,8 @@ double SpanReuse::expected_cost() const {
   }
   ModelRemainder left(kept_, factors_, frames_, chosen, std::move(motions));
   left.set_temporal(factors_.fit(left.rows()));
-  const double frames_of_gof = static_cast<double>(frames_.num_frames) / frames_.num_gofs;
-  const double part = frames_of_gof / count;
+  const double frames_in_gof = static_cast<double>(frames_.num_frames) / frames_.num_gofs;
+  const double part = frames_in_gof / count;
   const ComponentsByRow pc =
       components_by_row(left.rows(), left.width(), least_energy() / part);
   const std::vector<float> spatial_left = find_spatial_left(mesh_, pc);
@@ -112,7 +112,7 @@ double SpanReuse::expected_cost() const {
       mean += double{spatial_left[i * width + l]} / static_cast<double>(places);
     }
     const double energy = part * pc.energy[l];
-    cost -= energy - expected_component_cost(energy, frames_.num_vertices, 3.0 * frames_of_gof,
+    cost -= energy - expected_component_cost(energy, frames_.num_vertices, 3.0 * frames_in_gof,
                                              part * mean, step_);
   }
   return cost * frames_.num_gofs;
@@ -126,7 +126,7 @@ void SpanReuse::code_bones() {
   bones_ = std::move(bones.motions());
 }
 
-ModelRemainder SpanReuse::remainder(const GofSpan& span, bool has_temporal) const {
+ModelRemainder SpanReuse::remainder(const FrameRange& span, bool has_temporal) const {
   MotionsOfBones motions;
   for (const BoneMotion& bone : bones_)
     motions.push_back(motions_of(bone, span.first, span.count));
@@ -188,7 +188,7 @@ std::optional<SpanReuse::CodedTrajectory> SpanReuse::code_trajectory(
 }
 
 void SpanReuse::code_trajectories() {
-  const GofSpan all{0, frames_.num_frames};
+  const FrameRange all{0, frames_.num_frames};
   const std::vector<double> wanted = factors_.fit(remainder(all, false).rows());
   SpanTracks tracks(gofs_, settings_, true);
   const std::size_t width = 3 * std::size_t{frames_.num_frames};
@@ -207,7 +207,7 @@ void SpanReuse::code_trajectories() {
   }
 }
 
-LocalGroup SpanReuse::local_group(const GofSpan& span) const {
+LocalGroup SpanReuse::local_group(const FrameRange& span) const {
   if (settings_.max_trajectories == 0) return {};
   ModelRemainder left = remainder(span, true);
   SkinnedAnalysis analysis;
@@ -222,36 +222,36 @@ LocalGroup SpanReuse::local_group(const GofSpan& span) const {
   return code_local_group(mesh_, analysis, *kept_.recon, settings_, step_);
 }
 
-EncodedGof SpanReuse::encode() {
+EncodedSpan SpanReuse::encode() {
   code_bones();
   code_trajectories();
   const SpanUnits units(mesh_, context_.header, settings_.temporal_layers);
   std::vector<LocalGroup> groups(gofs_.size());
-  EncodedGof without = units.with_earlier_model(kept_, gofs_, groups);
-  const std::vector<GofSpan> spans = frames_.gofs();
+  EncodedSpan without = units.with_earlier_model(kept_, gofs_, groups);
+  const std::vector<FrameRange> spans = frames_.gofs();
   bool has_groups = false;
   for (std::size_t g = 0; g < spans.size(); ++g) {
     groups[g] = local_group(spans[g]);
     has_groups = has_groups || !groups[g].trajectories.empty();
   }
   if (!has_groups) return without;
-  EncodedGof with = units.with_earlier_model(kept_, std::move(gofs_), std::move(groups));
+  EncodedSpan with = units.with_earlier_model(kept_, std::move(gofs_), std::move(groups));
   const double cost = lagrangian_cost(with, frames_, step_);
   return cost < lagrangian_cost(without, frames_, step_) ? std::move(with) : std::move(without);
 }
 
 }  // namespace
 
-std::optional<EncodedGof> encode_with_model(const SkinnedContext& context,
-                                            const KeptModel& kept, const GofFrames& frames,
-                                            double step, double most) {
+std::optional<EncodedSpan> encode_with_model(const SkinnedContext& context,
+                                             const KeptModel& kept, const SpanFrames& frames,
+                                             double step, double most) {
   // tuned (off: 1e9): A span is encoded with an earlier model if its expected cost is at most
   // this multiple of what it must not exceed. Expectations are too high: they leave out that
   // weights of prediction adapt.
   constexpr double kHopeful = 2.0;
   SpanReuse reuse(context, kept, frames, step);
   if (std::isfinite(most) && reuse.expected_cost() > kHopeful * most) return std::nullopt;
-  EncodedGof encoded = reuse.encode();
+  EncodedSpan encoded = reuse.encode();
   if (std::isfinite(most) && lagrangian_cost(encoded, frames, step) >= most) {
     return std::nullopt;
   }

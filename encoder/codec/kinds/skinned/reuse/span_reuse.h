@@ -5,15 +5,15 @@
 
 #include "encoder/codec/kinds/skinned/quantise/kept_model.h"
 #include "encoder/codec/kinds/skinned/search/skinned_context.h"
-#include "encoder/codec/spans/gof_coder.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_coder.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
 // None: it costs at least `most` (Lagrangian cost), or is expected to cost far more. step:
 // quantiser step, grid units.
-std::optional<EncodedGof> encode_with_model(const SkinnedContext& context,
-                                            const KeptModel& kept, const GofFrames& frames,
-                                            double step, double most);
+std::optional<EncodedSpan> encode_with_model(const SkinnedContext& context,
+                                             const KeptModel& kept, const SpanFrames& frames,
+                                             double step, double most);
 
 }  // namespace rlpc

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-double rms_error(const GofFrames& frames, const EncodedGof& encoded) {
+double rms_error(const SpanFrames& frames, const EncodedSpan& encoded) {
   return std::sqrt(squared_error(frames, encoded.frame) /
                    static_cast<double>(frames.xyz.size()));
 }
@@ -24,8 +24,8 @@ double rms_error(const GofFrames& frames, const EncodedGof& encoded) {
 TEST(SpanReuse, FurtherFramesOfTheSameMotionTakeTracksAlone) {
   const KeptTube tube;
   ASSERT_TRUE(tube.kept);
-  const GofFrames later = KeptTube::frames(bent, 40, 32);
-  const EncodedGof own = tube.encode_alone(later);
+  const SpanFrames later = KeptTube::frames(bent, 40, 32);
+  const EncodedSpan own = tube.encode_alone(later);
   const double most = lagrangian_cost(own, later, kTubeStep);
   const auto encoded = encode_with_model(tube.context, *tube.kept, later, kTubeStep, most);
   ASSERT_TRUE(encoded);
@@ -38,7 +38,7 @@ TEST(SpanReuse, FurtherFramesOfTheSameMotionTakeTracksAlone) {
 
 TEST(SpanReuse, SpansMayHaveSeveralGofs) {
   const KeptTube tube;
-  const GofFrames later = KeptTube::frames(bent, 40, 33, 3);
+  const SpanFrames later = KeptTube::frames(bent, 40, 33, 3);
   const auto encoded = encode_with_model(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
   ASSERT_TRUE(encoded);
   std::uint32_t gofs = 0;
@@ -50,7 +50,7 @@ TEST(SpanReuse, SpansMayHaveSeveralGofs) {
 // A further deformation of few degrees of freedom.
 TEST(SpanReuse, OtherMotionGetsLocalComponentGroups) {
   const KeptTube tube;
-  const GofFrames later = KeptTube::frames(
+  const SpanFrames later = KeptTube::frames(
       [](const Point& p, double f) {
         Point moved = bent(p, f);
         moved[1] += 700.0 * std::sin(0.6 * f) * std::sin(p[0] / 1500.0);
@@ -69,7 +69,7 @@ TEST(SpanReuse, OtherMotionGetsLocalComponentGroups) {
 // Finer ones than that of the model need local component groups.
 TEST(SpanReuse, ErrorsFollowTheStep) {
   const KeptTube tube;
-  const GofFrames later = KeptTube::frames(bent, 40, 32);
+  const SpanFrames later = KeptTube::frames(bent, 40, 32);
   double last = 1e9;
   for (const double step : {64.0, 16.0, 2.0}) {
     const auto encoded = encode_with_model(tube.context, *tube.kept, later, step, kNoLimit);
@@ -83,7 +83,7 @@ TEST(SpanReuse, ErrorsFollowTheStep) {
 // Each vertex moves by itself.
 TEST(SpanReuse, RefusesWhatCostsMore) {
   const KeptTube tube;
-  const GofFrames later = KeptTube::frames(
+  const SpanFrames later = KeptTube::frames(
       [](const Point& p, double f) {
         const double x = 400.0 * std::sin(p[1] * 12.9898 + p[2] * 78.233 + p[0] + 43758.5 * f);
         return Point{p[1] + x, p[0] - 0.7 * x, p[2] + x * std::cos(f)};
@@ -95,7 +95,7 @@ TEST(SpanReuse, RefusesWhatCostsMore) {
 
 TEST(SpanReuse, GivesTheSameBytesOnSeveralThreads) {
   const KeptTube tube;
-  const GofFrames later = KeptTube::frames(bent, 40, 40, 2);
+  const SpanFrames later = KeptTube::frames(bent, 40, 40, 2);
   const auto one = encode_with_model(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
   const Threads threads(3);
   const auto three = encode_with_model(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
@@ -109,7 +109,7 @@ TEST(SpanReuse, GivesTheSameBytesOnSeveralThreads) {
 TEST(SpanReuse, CutsOfTemporalLayersDecode) {
   KeptTube tube;
   tube.settings.main.temporal_layers = 2;
-  const GofFrames later = KeptTube::frames(bent, 40, 32);
+  const SpanFrames later = KeptTube::frames(bent, 40, 32);
   const auto encoded = encode_with_model(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
   ASSERT_TRUE(encoded && encoded->cut);
   const double all = squared_error(later, encoded->frame);

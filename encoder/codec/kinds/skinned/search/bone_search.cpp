@@ -29,7 +29,7 @@ constexpr int kFastExchanges = 1;
 constexpr std::array<std::uint32_t, 9> kManyBones{5, 10, 15, 20, 24, 28, 36, 48, 64};
 
 // A single bone that only translates, with the centre of the vertices.
-Rig translation_rig(const GofFrames& frames) {
+Rig translation_rig(const SpanFrames& frames) {
   Rig rig;
   const double n = frames.num_vertices;
   rig.bones.resize(1);
@@ -61,7 +61,7 @@ constexpr double kLeastError = 1e-6;  // fixed: above zero
 
 }  // namespace
 
-BoneSearch::BoneSearch(const SkinnedContext& context, const GofFrames& frames)
+BoneSearch::BoneSearch(const SkinnedContext& context, const SpanFrames& frames)
     : context_(context),
       frames_(frames),
       settings_(usual_settings(context.settings)),

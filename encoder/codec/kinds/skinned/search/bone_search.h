@@ -13,7 +13,7 @@
 #include "encoder/codec/kinds/skinned/fit/rig.h"
 #include "encoder/codec/kinds/skinned/search/skinned_context.h"
 #include "encoder/codec/kinds/skinned/search/skinned_trial.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -22,7 +22,7 @@ namespace rlpc {
 class BoneSearch {
  public:
   // Keeps references to all arguments.
-  BoneSearch(const SkinnedContext& context, const GofFrames& frames);
+  BoneSearch(const SkinnedContext& context, const SpanFrames& frames);
 
   // Called after each stage with the fraction done, 0 to 1, of all work on the span.
   void set_progress(const std::function<void(double)>& progress) { progress_ = progress; }
@@ -85,7 +85,7 @@ class BoneSearch {
   BestTrial polish(const SkinnedTrials& trials, const Candidate& chosen);
 
   const SkinnedContext& context_;
-  const GofFrames& frames_;
+  const SpanFrames& frames_;
   SkinnedSettings settings_;
   std::uint32_t max_influences_;
   std::uint32_t search_influences_;  // maximum bones per vertex while bones are fitted

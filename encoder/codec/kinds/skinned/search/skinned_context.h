@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "common/codec/mesh/coded_meshes.h"
 #include "common/codec/mesh/mesh.h"
+#include "common/codec/mesh/ordered_meshes.h"
 #include "common/codec/syntax/sequence_header.h"
 #include "encoder/codec/kinds/skinned/quantise/skinned_analysis.h"
 #include "encoder/codec/settings.h"
@@ -15,7 +15,7 @@ struct SkinnedContext {
   const SequenceHeader& header;  // its grid and level may change later
   const EncoderSettings& settings;
   std::span<const Triangle> triangles;  // decoded order
-  CodedMeshes meshes;
+  OrderedMeshes meshes;
 };
 
 // The tools that the search starts from, as far as the settings leave a choice.

@@ -51,7 +51,7 @@ BestTrial cheaper(BestTrial before, SkinnedTrial trial) {
   return trial;
 }
 
-SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const GofFrames& frames,
+SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const SpanFrames& frames,
                                   const SkinnedCandidate& candidate, double step,
                                   const SkinnedAnalysis* before) {
   return analyse_skinned_gof(context.meshes[candidate.settings.prediction],
@@ -60,7 +60,7 @@ SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const GofFrames
 }
 
 SkinnedTrial SkinnedTrials::encode(SkinnedCandidate candidate, SkinnedAnalysis analysis) const {
-  const EncodedGof encoded =
+  const EncodedSpan encoded =
       encode_skinned_gof(context_, analysis, candidate.settings, step_, false);
   const double error = squared_error(frames_, encoded.frame, kErrorFrames);
   const double bits = bits_of(encoded);
@@ -101,10 +101,10 @@ BestTrial SkinnedTrials::with_settings(const SkinnedTrial& trial,
   return other.cost < trial.cost ? BestTrial(std::move(other)) : std::nullopt;
 }
 
-EncodedGof encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,
-                              const SkinnedSettings& settings, double step,
-                              bool has_followers) {
-  const CodedMesh& mesh = context.meshes[settings.prediction];
+EncodedSpan encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,
+                               const SkinnedSettings& settings, double step,
+                               bool has_followers) {
+  const OrderedMesh& mesh = context.meshes[settings.prediction];
   CodedSpan coded = code_skinned_span(mesh, analysis, settings, step);
   const SpanUnits units(mesh, context.header, settings.temporal_layers);
   if (has_followers) return units.with_kept_model(std::move(coded), analysis.rest);

@@ -7,8 +7,8 @@
 #include "encoder/codec/kinds/skinned/fit/rig.h"
 #include "encoder/codec/kinds/skinned/quantise/skinned_analysis.h"
 #include "encoder/codec/kinds/skinned/search/skinned_context.h"
-#include "encoder/codec/spans/gof_coder.h"
-#include "encoder/codec/spans/gof_frames.h"
+#include "encoder/codec/spans/span_coder.h"
+#include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
 
@@ -47,7 +47,7 @@ BestTrial cheaper(BestTrial before, SkinnedTrial trial);
 class SkinnedTrials {
  public:
   // Keeps references to context and frames.
-  SkinnedTrials(const SkinnedContext& context, const GofFrames& frames, double step)
+  SkinnedTrials(const SkinnedContext& context, const SpanFrames& frames, double step)
       : context_(context), frames_(frames), step_(step) {}
 
   double step() const { return step_; }
@@ -64,18 +64,19 @@ class SkinnedTrials {
   SkinnedTrial encode(SkinnedCandidate candidate, SkinnedAnalysis analysis) const;
 
   const SkinnedContext& context_;
-  const GofFrames& frames_;
+  const SpanFrames& frames_;
   double step_;
 };
 
 // The analysis that encode_skinned_gof() starts from.
-SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const GofFrames& frames,
+SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const SpanFrames& frames,
                                   const SkinnedCandidate& candidate, double step,
                                   const SkinnedAnalysis* before = nullptr);
 
 // Quantises the trajectories and writes the units. step: quantiser step, grid units.
 // has_followers: with a skinned model that later spans may use.
-EncodedGof encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,
-                              const SkinnedSettings& settings, double step, bool has_followers);
+EncodedSpan encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,
+                               const SkinnedSettings& settings, double step,
+                               bool has_followers);
 
 }  // namespace rlpc

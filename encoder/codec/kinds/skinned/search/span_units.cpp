@@ -13,7 +13,7 @@
 namespace rlpc {
 namespace {
 
-void add_units(SkinnedGofPayloads payloads, UnitType first, EncodedGof& encoded) {
+void add_units(SkinnedGofPayloads payloads, UnitType first, EncodedSpan& encoded) {
   encoded.units.push_back({first, std::move(payloads.first)});
   for (std::size_t i = 0; i < payloads.slices.size(); ++i) {
     encoded.units.push_back(
@@ -38,7 +38,7 @@ DecodeFrame frames_of(std::vector<std::shared_ptr<const SkinnedRecon>> recons) {
 
 // Local component groups add trajectories with factors of their own.
 void count(const SkinnedModel& model, std::uint64_t num_vertices,
-           std::span<const SkinnedGof> gofs, EncodedGof& encoded) {
+           std::span<const SkinnedGof> gofs, EncodedSpan& encoded) {
   const std::uint64_t num_bones = model.bones.size();
   const std::uint64_t shared = model.trajectories.size();
   encoded.clusters = static_cast<std::uint32_t>(num_bones);
@@ -65,8 +65,8 @@ SpanUnits::SharedRecon SpanUnits::recon_of(const SkinnedModel& model,
              : std::make_shared<ModelRecon>(mesh_, model, header_.position_bits, values);
 }
 
-EncodedGof SpanUnits::alone(CodedSpan coded) const {
-  EncodedGof encoded;
+EncodedSpan SpanUnits::alone(CodedSpan coded) const {
+  EncodedSpan encoded;
   count(coded.model, mesh_.num_vertices(), coded.gofs, encoded);
   const std::vector<std::int32_t> values = std::move(coded.values);
   auto gof = std::make_shared<SkinnedGof>(merge_into_gof(std::move(coded)));
@@ -88,13 +88,13 @@ EncodedGof SpanUnits::alone(CodedSpan coded) const {
   return encoded;
 }
 
-void SpanUnits::write_model(const SkinnedModel& model, EncodedGof& encoded) const {
+void SpanUnits::write_model(const SkinnedModel& model, EncodedSpan& encoded) const {
   add_units(write_skinned_model(model, kModelIdx, mesh_, header_), UnitType::kModel, encoded);
 }
 
 // GOFs of tracks, complete but for temporal layers.
 void SpanUnits::write_gofs(const SharedRecon& recon, std::vector<SkinnedGof> gofs,
-                           EncodedGof& encoded) const {
+                           EncodedSpan& encoded) const {
   std::vector<std::shared_ptr<const SkinnedRecon>> recons;
   for (SkinnedGof& gof : gofs) {
     set_temporal_layers(temporal_layers_, gof);
@@ -113,8 +113,8 @@ void SpanUnits::write_gofs(const SharedRecon& recon, std::vector<SkinnedGof> gof
   encoded.frame = frames_of(std::move(recons));
 }
 
-EncodedGof SpanUnits::with_model(CodedSpan coded) const {
-  EncodedGof encoded;
+EncodedSpan SpanUnits::with_model(CodedSpan coded) const {
+  EncodedSpan encoded;
   count(coded.model, mesh_.num_vertices(), coded.gofs, encoded);
   const auto model = std::make_shared<const SkinnedModel>(std::move(coded.model));
   write_model(*model, encoded);
@@ -124,9 +124,9 @@ EncodedGof SpanUnits::with_model(CodedSpan coded) const {
   return encoded;
 }
 
-EncodedGof SpanUnits::with_kept_model(
+EncodedSpan SpanUnits::with_kept_model(
     CodedSpan coded, const std::array<std::vector<std::int32_t>, 3>& rest) const {
-  EncodedGof encoded;
+  EncodedSpan encoded;
   count(coded.model, mesh_.num_vertices(), coded.gofs, encoded);
   write_model(coded.model, encoded);
   auto kept = std::make_shared<KeptModel>();
@@ -142,13 +142,13 @@ EncodedGof SpanUnits::with_kept_model(
   return encoded;
 }
 
-EncodedGof SpanUnits::with_earlier_model(const KeptModel& kept, std::vector<SkinnedGof> gofs,
-                                         std::vector<LocalGroup> local_groups) const {
+EncodedSpan SpanUnits::with_earlier_model(const KeptModel& kept, std::vector<SkinnedGof> gofs,
+                                          std::vector<LocalGroup> local_groups) const {
   for (std::size_t g = 0; g < gofs.size(); ++g) {
     use_model(kept.model, gofs[g]);
     add_local_group(std::move(local_groups[g]), gofs[g]);
   }
-  EncodedGof encoded;
+  EncodedSpan encoded;
   count(*kept.model, mesh_.num_vertices(), gofs, encoded);
   write_gofs(kept.recon, std::move(gofs), encoded);
   return encoded;

@@ -7,41 +7,41 @@
 #include <vector>
 
 #include "common/codec/kinds/skinned/recon/model_recon.h"
-#include "common/codec/mesh/coded_mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/syntax/sequence_header.h"
 #include "encoder/codec/kinds/skinned/quantise/kept_model.h"
 #include "encoder/codec/kinds/skinned/quantise/skinned_gof_encoder.h"
-#include "encoder/codec/spans/gof_coder.h"
+#include "encoder/codec/spans/span_coder.h"
 
 namespace rlpc {
 
 class SpanUnits {
  public:
   // Keeps a reference to the mesh, which encodings also refer to, and to the header.
-  SpanUnits(const CodedMesh& mesh, const SequenceHeader& header, int temporal_layers)
+  SpanUnits(const OrderedMesh& mesh, const SequenceHeader& header, int temporal_layers)
       : mesh_(mesh), header_(header), temporal_layers_(temporal_layers) {}
 
   // The only GOF of a span, with vertices of its own.
-  EncodedGof alone(CodedSpan coded) const;
+  EncodedSpan alone(CodedSpan coded) const;
   // A skinned model and GOFs of tracks.
-  EncodedGof with_model(CodedSpan coded) const;
+  EncodedSpan with_model(CodedSpan coded) const;
   // The same; later spans may use the model. rest: as decoded, 1/16 grid units.
-  EncodedGof with_kept_model(CodedSpan coded,
-                             const std::array<std::vector<std::int32_t>, 3>& rest) const;
+  EncodedSpan with_kept_model(CodedSpan coded,
+                              const std::array<std::vector<std::int32_t>, 3>& rest) const;
   // GOFs of tracks of an earlier model. local_groups [GOF].
-  EncodedGof with_earlier_model(const KeptModel& kept, std::vector<SkinnedGof> gofs,
-                                std::vector<LocalGroup> local_groups) const;
+  EncodedSpan with_earlier_model(const KeptModel& kept, std::vector<SkinnedGof> gofs,
+                                 std::vector<LocalGroup> local_groups) const;
 
  private:
   using SharedRecon = std::shared_ptr<const ModelRecon>;
 
   SharedRecon recon_of(const SkinnedModel& model, std::span<const std::int32_t> values) const;
 
-  void write_model(const SkinnedModel& model, EncodedGof& encoded) const;
+  void write_model(const SkinnedModel& model, EncodedSpan& encoded) const;
   void write_gofs(const SharedRecon& recon, std::vector<SkinnedGof> gofs,
-                  EncodedGof& encoded) const;
+                  EncodedSpan& encoded) const;
 
-  const CodedMesh& mesh_;
+  const OrderedMesh& mesh_;
   const SequenceHeader& header_;
   int temporal_layers_;
 };

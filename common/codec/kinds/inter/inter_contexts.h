@@ -1,0 +1,81 @@
+// Models and contexts of a GOF of frames (clause 9.8.6). The parser and the writer drive them
+// in the same way.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/codec/bits/residual_models.h"
+#include "common/codec/kinds/inter/inter_gof.h"
+#include "common/codec/mesh/ordered_mesh.h"
+#include "common/memory/owned.h"
+
+namespace rlpc {
+
+inline constexpr std::size_t kFrameClasses = 3;
+
+// Expected magnitudes of the residuals of a GOF of frames.
+class InterContexts {
+ public:
+  // The mesh must have layers, and outlive it.
+  InterContexts(const OrderedMesh& mesh, std::size_t num_layer_groups,
+                std::uint32_t num_depths);
+
+  // Call at the start of each frame that repeats no other, with its place in coding order and
+  // its depth, and before the vertices of each layer group of it.
+  void start_frame(std::uint32_t place, std::uint32_t depth);
+  void start_group(std::size_t layer_group) { group_ = layer_group; }
+  // Call before the residuals of a vertex, which follow axis by axis.
+  void start(std::uint32_t v);
+
+  // The expected magnitude of the next residual, with 4 fractional bits, and its models.
+  std::uint32_t expected() const {
+    const std::uint64_t sum = 64 * std::uint64_t{*layer_mean_} +
+                              51 * std::uint64_t{ring_mean_} + 38 * std::uint64_t{outer_mean_};
+    const std::uint64_t own =
+        axis_ == 0 ? 103 * std::uint64_t{before_mean_}
+                   : 64 * std::uint64_t{before_mean_} + 39 * std::uint64_t{latest_mean_};
+    return static_cast<std::uint32_t>((sum + own) >> 12);
+  }
+  ResidualModels& models() { return state_->models[group_][class_]; }
+  void update(std::int32_t residual);
+
+  // FrameExpected of the vertex, once it has been started.
+  std::uint16_t frame_expected() const {
+    return static_cast<std::uint16_t>(std::min(expected(), kMaxInterExpected));
+  }
+
+ private:
+  static constexpr std::uint32_t kMaxMagnitude = 4095;
+
+  std::uint32_t mean_magnitude(std::span<const std::uint32_t> ring,
+                               std::uint32_t otherwise) const;
+
+  // What carries over from frame to frame.
+  struct State {
+    Vector<std::array<ResidualModels, kFrameClasses>> models;  // [layer group][class]
+    Vector<std::uint32_t> mean;                                // FrameLayerMean, [num_layers]
+    Vector<std::uint16_t> magnitude;  // of the last frame, summed over the axes
+  };
+
+  const OrderedMesh& mesh_;
+  std::size_t num_layer_groups_;
+  Vector<State> states_;          // of the first frame, then [num_depths]: of the others
+  State* state_ = nullptr;        // of the frame
+  Vector<std::uint16_t> before_;  // FrameMagnitudeBefore
+  bool is_first_ = true;
+  std::size_t group_ = 0;
+  // State of the current vertex:
+  std::uint32_t vertex_ = 0;
+  std::size_t class_ = 0;
+  std::size_t axis_ = 0;
+  std::uint32_t* layer_mean_ = nullptr;
+  std::uint32_t ring_mean_ = 0;
+  std::uint32_t outer_mean_ = 0;
+  std::uint32_t before_mean_ = 0;
+  std::uint32_t latest_mean_ = 0;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,75 @@
+// 6.14: a GOF of frames, each predicted from decoded ones.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "common/codec/kinds/inter/compact_residuals.h"
+#include "common/codec/kinds/inter/frame_order.h"
+#include "common/codec/kinds/inter/patch_motion.h"
+#include "common/codec/mesh/weight_settings.h"
+#include "common/codec/rest/rest_shape.h"
+#include "common/codec/syntax/gof_header.h"
+#include "common/memory/owned.h"
+
+namespace rlpc {
+
+inline constexpr std::uint32_t kMaxInterStep = 1U << 16;  // 1/16 grid units
+inline constexpr std::uint32_t kExactInterStep = 16;      // one grid unit
+inline constexpr std::uint32_t kMaxInterExpected = 1023;  // 9.8.6, 1/16
+
+// frame_crc, and where it is in the stream.
+struct FrameCrc {
+  std::uint32_t crc = 0;
+  std::uint64_t bit_pos = 0;
+
+  bool operator==(const FrameCrc& other) const { return crc == other.crc; }
+};
+
+// 6.14.2 frame_unit( ): the residuals of a frame.
+struct InterFrame {
+  std::uint32_t layer_groups = 0;  // that are in the stream; others are zero
+  // The frame that it is equal to: it then has its layer groups, and nothing of what follows.
+  std::optional<std::uint32_t> repeated;
+  // The frame that it is predicted from, in place of the references of its pattern.
+  std::optional<std::uint32_t> reference;
+  std::optional<FrameCrc> frame_crc;
+  FramePatches patches;
+  CompactResiduals residual;       // [num_vertices][3]; empty: all are zero
+  Vector<std::uint16_t> expected;  // [num_vertices]: FrameExpected, 1/16 step
+  // [num_vertices] in a first frame with an order of its own, if there are counterparts.
+  Vector<Counterpart> counterparts;
+
+  bool operator==(const InterFrame&) const = default;
+};
+
+struct InterSettings {
+  FramePattern pattern;
+  bool exact_flag = false;                      // positions are sums of whole grid units
+  Vector<std::uint32_t> step{kExactInterStep};  // [num_depths]
+  bool learning_flag = false;
+  WeightSettings weights;  // without adaptive factors
+  int prime_log2 = 0;
+  bool frame_hash_flag = false;
+  std::uint32_t max_earlier_distance = 0;     // in coding order, of repeated and reference
+  Vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups]: layers
+  Vector<std::uint8_t> layer_step;            // [num_layers], 1 to kMaxLayerStep
+  RestSettings rest;                          // of the first frame
+  std::uint32_t num_patches = 0;
+  PatchOfVertex patch_of_vertex;  // [num_vertices] if there are patches
+
+  bool operator==(const InterSettings&) const = default;
+};
+
+// Copies share the frames.
+struct InterGof : GofHeader, InterSettings {
+  std::shared_ptr<const Vector<InterFrame>> frames;  // [num_frames]; set once parsed
+
+  bool operator==(const InterGof& other) const {
+    return static_cast<const GofHeader&>(*this) == other &&
+           static_cast<const InterSettings&>(*this) == other && *frames == *other.frames;
+  }
+};
+
+}  // namespace rlpc

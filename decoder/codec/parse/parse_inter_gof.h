@@ -1,0 +1,107 @@
+// 6.14: GOFs of frames and their frame units, parsing side.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "common/codec/bits/bit_reader.h"
+#include "common/codec/kinds/access_unit.h"
+#include "common/codec/kinds/inter/inter_contexts.h"
+#include "common/codec/kinds/inter/inter_gof.h"
+#include "common/codec/kinds/inter/patch_contexts.h"
+#include "common/codec/mesh/ordered_mesh.h"
+#include "common/codec/syntax/sequence_header.h"
+#include "common/memory/owned.h"
+#include "common/result.h"
+#include "decoder/codec/parse/memory_limit.h"
+#include "decoder/codec/parse/section_reader.h"
+#include "decoder/codec/slice_cut.h"
+
+namespace rlpc {
+
+// 6.14.2 frame_unit( ), its beginning.
+struct FrameUnitStart {
+  std::uint32_t frame_idx = 0;
+  bool gof_end_flag = false;
+};
+// num_frames: of the GOF. Errors are left in `r`.
+FrameUnitStart parse_frame_unit_start(BitReader& r, const SequenceHeader& header,
+                                      std::uint32_t num_frames);
+
+// A GOF unit and the frame units after it, one by one. Every size is checked against the level,
+// and the memory it needs against the limit, before anything is allocated. Layer groups outside
+// the cut are treated as absent.
+class InterGofParser {
+ public:
+  // The mesh must have layers. All must outlive it. memory.bytes_in_use: by all others.
+  InterGofParser(const SequenceHeader& header, const OrderedMesh& mesh,
+                 const MemoryLimit& memory, const SliceCut& cut = {})
+      : header_(header), mesh_(mesh), memory_(memory), cut_(cut) {}
+
+  // 6.14 frames_in_gof( ): the rest of the payload of a GOF unit, to which `r` ends.
+  Result<bool> gof(BitReader& r, const GofHeader& gof_header);
+  // 6.14.2 frame_unit( ). unit_bit_pos: of the unit.
+  Result<bool> frame(BitReader& r, std::uint64_t unit_bit_pos);
+  InterGof finish();
+
+  // Of the settings in the GOF unit, and with the number of frames that is known so far.
+  const InterSettings& settings() const { return gof_; }
+  const FrameOrder& order() const { return *order_; }
+  // Places whose frames have all their frame units: 8.19.1 DecodeCompleteFrames( ).
+  std::uint32_t complete_places() const;
+  // Hands over a frame that is complete.
+  InterFrame take_frame(std::uint32_t frame);
+
+  // The unit that the last frame() parsed; none if the cut drops it.
+  const std::optional<SliceEntry>& last_unit() const { return last_unit_; }
+  bool is_cut() const { return is_cut_; }
+  // Estimated memory of what has been parsed so far.
+  std::uint64_t memory_bytes() const { return memory_bytes_; }
+
+ private:
+  void weights(BitReader& r);
+  void patch_map(BitReader& r);
+  void end_gof(BitReader& r, std::uint32_t num_frames, std::uint64_t unit_bit_pos);
+  void frames_of_group(BitReader& r, SliceEntry& unit, std::uint64_t unit_bit_pos);
+  // Places of the frames of a unit; fewer than it claims if there are no more.
+  Vector<std::uint32_t> unit_places(const SliceEntry& unit) const;
+  bool may_follow(const SliceEntry& unit, std::span<const std::uint32_t> places);
+  // False: the frame repeats another.
+  bool frame_start(BitReader& r, const SliceEntry& unit, std::uint32_t place);
+  void earlier_frame(BitReader& r, std::uint32_t place);
+  void patch_motions(SectionReader& section, InterFrame& frame);
+  void frame_section(BitReader& r, const SliceEntry& unit,
+                     std::span<const std::uint32_t> places);
+  void positions_in_order(SectionReader& section, InterFrame& frame);
+  void frame_residuals(SectionReader& section, const SliceEntry& unit, std::uint32_t place);
+  InterFrame& frame_at(std::uint32_t place) { return frames_[(*order_)[place].frame]; }
+  bool has_memory(BitReader& r, std::uint64_t more, const char* structure, std::uint64_t at);
+
+  const SequenceHeader& header_;
+  const OrderedMesh& mesh_;
+  MemoryLimit memory_;
+  SliceCut cut_;
+  InterGof gof_;  // without its frames
+  Vector<InterFrame> frames_;
+  std::optional<InterContexts> contexts_;
+  std::optional<PatchContexts> patch_contexts_;  // if there are patches
+  std::optional<FrameOrder> order_;
+  std::uint32_t next_place_ = 0;  // LastPlace + 1
+  // Of each temporal layer: how far its frame units have got.
+  struct LayerPlace {
+    std::uint32_t next = 0;        // LastPlaceOfLayer + 1
+    Vector<std::uint32_t> before;  // [temporal layer]: frames before next - 1
+  };
+  Vector<LayerPlace> layer_places_;
+  // [temporal layer][layer group]: frames that have the layer group.
+  Vector<Vector<std::uint32_t>> frames_of_group_;
+  std::uint32_t end_layer_group_ = 0;     // of those that the cut keeps
+  std::uint32_t end_temporal_layer_ = 0;  // likewise
+  bool is_cut_ = false;
+  std::optional<SliceEntry> last_unit_;
+  std::uint64_t memory_bytes_ = 0;
+};
+
+}  // namespace rlpc

@@ -1,0 +1,32 @@
+// Chooses the settings of a GOF of frames.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/codec/kinds/inter/inter_gof.h"
+#include "common/codec/mesh/mesh.h"
+#include "common/codec/mesh/ordered_mesh.h"
+#include "common/codec/syntax/sequence_header.h"
+#include "encoder/codec/settings.h"
+#include "encoder/codec/spans/span_frames.h"
+
+namespace rlpc {
+
+// step: quantiser step, in grid steps; not used if the target is lossless. Of a pattern with
+// several depths, the root mean square of theirs, so that the error, and what a bit is worth,
+// are about those of other patterns.
+InterSettings choose_frame_settings(const SequenceHeader& header,
+                                    const EncoderSettings& settings, const OrderedMesh& layers,
+                                    const FramePattern& pattern, double step);
+
+// The patch of each vertex, for at most so many patches; empty if that is 0. Takes up to some
+// seconds for 10,000 vertices.
+//
+//   triangles  of the mesh whose vertices are in the order of the frames
+PatchOfVertex divide_into_patches(const SequenceHeader& header, const EncoderSettings& settings,
+                                  const SpanFrames& frames, std::span<const Triangle> triangles,
+                                  std::uint32_t count);
+void set_patches(InterSettings& settings, const PatchOfVertex& patch_of_vertex);
+
+}  // namespace rlpc

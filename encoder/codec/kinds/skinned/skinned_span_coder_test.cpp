@@ -1,0 +1,279 @@
+#include "encoder/codec/kinds/skinned/skinned_span_coder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "common/testing/tube.h"
+#include "encoder/codec/spans/lagrangian.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint32_t kRings = 24;
+constexpr std::uint32_t kSides = 8;
+constexpr std::uint32_t kVertices = kRings * kSides;
+
+using Move = std::function<Point(const Point&, double)>;
+
+// A bumpy tube along x, in grid steps, moved by a given function.
+struct Animation {
+  explicit Animation(const Move& move, std::uint32_t num_frames = 20)
+      : triangles(tube_triangles(kRings, kSides)),
+        topology(make_topology(kVertices, triangles)) {
+    header.num_vertices = frames.num_vertices = kVertices;
+    header.position_bits = 20;
+    frames.num_frames = num_frames;
+    for (std::uint32_t f = 0; f < num_frames; ++f) {
+      for (std::uint32_t v = 0; v < kVertices; ++v) {
+        const std::uint32_t ring = v / kSides;
+        const double angle = 6.283185307 * (v % kSides) / kSides;
+        const double radius = 2500.0 + 300.0 * std::sin(1.7 * v);
+        const Point p =
+            move({1000.0 * ring, radius * std::cos(angle), radius * std::sin(angle)}, f);
+        frames.xyz.insert(frames.xyz.end(), p.begin(), p.end());
+      }
+    }
+  }
+
+  // The result keeps a reference to the settings.
+  SkinnedContext context(const EncoderSettings& settings) const {
+    return {header, settings, triangles, OrderedMeshes(topology, triangles)};
+  }
+
+  SequenceHeader header;
+  std::vector<Triangle> triangles;
+  Topology topology;
+  SpanFrames frames;
+};
+
+Point turned(const Point& p, double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]};
+}
+Point still(const Point& p, double) { return p; }
+// Motion with varying speed, so that extrapolation is not exact.
+Point rigid(const Point& p, double f) {
+  const Point q = turned({p[0], p[2], p[1]}, 0.8 * std::sin(0.5 * f));
+  return {q[0] + 5000.0 * std::sin(0.37 * f), q[1], q[2] - 70.0 * f};
+}
+// The second half bends smoothly relative to the first, and swells.
+Point bending(const Point& p, double f) {
+  const double bend = 0.5 * std::sin(0.4 * f) * std::tanh((p[0] - 12000.0) / 3000.0);
+  const Point q = turned({p[0] - 12000.0, p[1], p[2]}, bend);
+  return {q[0], q[1], q[2] * (1.0 + 0.05 * std::sin(0.9 * f + p[0] / 4000.0))};
+}
+
+struct Outcome {
+  EncodedSpan gof;
+  std::size_t bytes = 0;
+  double rms_error = 0.0;  // of a coordinate, grid steps
+};
+
+Outcome encode(const Animation& a, double step, const EncoderSettings& settings) {
+  const SkinnedContext context = a.context(settings);
+  SkinnedSpanCoder coder(context, a.frames);
+  Outcome outcome;
+  outcome.gof = coder.encode(step, step);
+  for (const auto& unit : outcome.gof.units) outcome.bytes += unit.payload.size();
+  std::vector<std::int32_t> positions(3 * kVertices);
+  double sum = 0.0;
+  for (std::uint32_t f = 0; f < a.frames.num_frames; ++f) {
+    outcome.gof.frame(f, positions);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const double d = positions[i] - a.frames.at(f, 0)[i];
+      sum += d * d;
+    }
+  }
+  outcome.rms_error = std::sqrt(sum / static_cast<double>(a.frames.xyz.size()));
+  return outcome;
+}
+EncoderSettings fast() {
+  EncoderSettings settings;
+  settings.preset = Preset::kFast;
+  return settings;
+}
+
+// Adds frames of the same shape.
+TEST(SkinnedSpanCoder, FurtherFramesOfAStaticMeshCostAlmostNothing) {
+  const std::size_t one = encode(Animation(still, 2), 8.0, fast()).bytes;
+  const Outcome many = encode(Animation(still, 100), 8.0, fast());
+  EXPECT_EQ(many.gof.clusters, 1U);
+  EXPECT_EQ(many.gof.components, 0U);
+  // Rest positions are finer, because their errors occur in every frame: 2.8 bits per
+  // coordinate.
+  EXPECT_LT(many.bytes, one + kVertices * 3 * 4 / 8 + 40);
+  EXPECT_LT(many.rms_error, 8.0);
+}
+
+TEST(SkinnedSpanCoder, CodesARigidMotionWithOneBone) {
+  const Outcome still_mesh = encode(Animation(still, 40), 8.0, fast());
+  const Outcome moving = encode(Animation(rigid, 40), 8.0, fast());
+  EXPECT_EQ(moving.gof.clusters, 1U);
+  EXPECT_EQ(moving.gof.components, 0U);
+  EXPECT_LT(moving.rms_error, 8.0);
+  // A few bytes per frame for the six coordinates of the pose.
+  EXPECT_LT(moving.bytes, still_mesh.bytes + 40 * 16);
+}
+
+// Coding is closed-loop: the error is proportional to the step and does not grow over time.
+TEST(SkinnedSpanCoder, ErrorIsProportionalToTheStep) {
+  const Animation a(bending);
+  double last_error = 0.0;
+  std::size_t last_bytes = 1U << 30;
+  for (const double step : {4.0, 16.0, 64.0, 256.0}) {
+    const Outcome outcome = encode(a, step, fast());
+    EXPECT_LT(outcome.rms_error, step) << step;
+    EXPECT_GT(outcome.rms_error, last_error) << step;
+    EXPECT_LT(outcome.bytes, last_bytes) << step;
+    last_error = outcome.rms_error;
+    last_bytes = outcome.bytes;
+  }
+}
+
+// The actual error differs from the estimate by about the same factor at all steps.
+TEST(SkinnedSpanCoder, EstimatesTheErrorWithOneBone) {
+  const Animation a(bending);
+  const EncoderSettings settings = fast();
+  const SkinnedContext context = a.context(settings);
+  SkinnedSpanCoder coder(context, a.frames);
+  EXPECT_FALSE(coder.expected_error(10.0));
+  coder.analyse(10.0);
+  double least = 1e9;
+  double most = 0.0;
+  for (const double step : {10.0, 13.0, 16.0, 20.0}) {
+    const double real = squared_error(a.frames, coder.encode(step, 10.0).frame);
+    const double factor = std::sqrt(real / coder.expected_error(step).value());
+    least = std::min(least, factor);
+    most = std::max(most, factor);
+  }
+  EXPECT_GT(least, 0.6);
+  EXPECT_LT(most, 1.6);
+  EXPECT_LT(most, 1.2 * least);
+}
+
+// From a draft, so that it ends with the first encoding.
+TEST(SkinnedSpanCoder, EstimatesTheErrorWithSeveralBonesUntilItEncodes) {
+  const Animation a(bending);
+  EncoderSettings settings;
+  settings.main.bones = 2;
+  const SkinnedContext context = a.context(settings);
+  SkinnedSpanCoder coder(context, a.frames);
+  coder.analyse(10.0);
+  for (const double step : {10.0, 13.0}) {
+    SkinnedSpanCoder other(context, a.frames);
+    const double real = squared_error(a.frames, other.encode(step, step).frame);
+    EXPECT_NEAR(std::sqrt(coder.expected_error(step).value() / real), 1.0, 0.15) << step;
+  }
+  coder.encode(10.0, 10.0);
+  EXPECT_FALSE(coder.expected_error(10.0));
+}
+
+TEST(SkinnedSpanCoder, IsDeterministic) {
+  const Animation a(bending);
+  const Outcome first = encode(a, 20.0, {});
+  const Outcome second = encode(a, 20.0, {});
+  ASSERT_EQ(first.gof.units.size(), second.gof.units.size());
+  for (std::size_t i = 0; i < first.gof.units.size(); ++i) {
+    EXPECT_EQ(first.gof.units[i].type, second.gof.units[i].type);
+    EXPECT_EQ(first.gof.units[i].payload, second.gof.units[i].payload);
+  }
+}
+
+std::size_t bytes_of(const EncodedSpan& gof) {
+  std::size_t bytes = 0;
+  for (const auto& unit : gof.units) bytes += unit.payload.size();
+  return bytes;
+}
+
+// Components that are kept from the first step on hardly affect the result.
+TEST(SkinnedSpanCoder, RecomputesAReleasedAnalysis) {
+  const Animation a(bending);
+  const EncoderSettings settings;
+  const SkinnedContext context = a.context(settings);
+  SkinnedSpanCoder keeping(context, a.frames);
+  SkinnedSpanCoder releasing(context, a.frames);
+  for (const auto& [step, analysis_step] : {std::pair{20.0, 20.0}, std::pair{50.0, 20.0},
+                                            std::pair{7.0, 7.0}, std::pair{20.0, 20.0}}) {
+    const auto expected = static_cast<double>(bytes_of(releasing.encode(step, analysis_step)));
+    releasing.release_analysis();
+    EXPECT_TRUE(releasing.needs_frames(step, analysis_step));
+    const auto bytes = static_cast<double>(bytes_of(keeping.encode(step, analysis_step)));
+    EXPECT_NEAR(bytes, expected, 0.02 * expected) << step;
+  }
+}
+
+TEST(SkinnedSpanCoder, HasTheRequestedNumbersOfBonesAndTrajectories) {
+  const Animation a(bending);
+  EncoderSettings settings = fast();
+  settings.main.bones = 3;
+  settings.components = 2;
+  const Outcome outcome = encode(a, 4.0, settings);
+  EXPECT_LE(outcome.gof.clusters, 3U);
+  EXPECT_EQ(outcome.gof.components, 2U);
+}
+
+// No explicit setting of prediction is clearly better than the automatic choice, which is made
+// by drafts.
+TEST(SkinnedSpanCoder, ChoosesTheCheapestPrediction) {
+  const double step = 20.0;
+  const auto cost = [&](const Animation& a, const EncoderSettings& settings) {
+    const Outcome o = encode(a, step, settings);
+    return o.rms_error * o.rms_error * static_cast<double>(a.frames.xyz.size()) +
+           lambda(step) * 8.0 * static_cast<double>(o.bytes);
+  };
+  bool differs = false;
+  for (const Move& move : {Move(bending), Move(rigid)}) {
+    const Animation a(move);
+    const double chosen = cost(a, {});
+    for (const Prediction prediction :
+         {Prediction::kParallelogram, Prediction::kParallelograms, Prediction::kLayers}) {
+      EncoderSettings settings;
+      settings.main.prediction = prediction;
+      const double asked = cost(a, settings);
+      EXPECT_LE(chosen, 1.02 * asked) << static_cast<int>(prediction);
+      differs = differs || asked > 1.03 * chosen;
+    }
+  }
+  EXPECT_TRUE(differs);
+}
+
+// Frames may be freed when needs_frames() is false.
+TEST(SkinnedSpanCoder, ReportsWhenItNeedsTheFrames) {
+  Animation a(bending);
+  const EncoderSettings settings = fast();
+  const SkinnedContext context = a.context(settings);
+  SkinnedSpanCoder coder(context, a.frames);
+  EXPECT_TRUE(coder.needs_frames(20.0, 20.0));
+  coder.encode(20.0, 20.0);
+  EXPECT_FALSE(coder.needs_frames(22.0, 20.0));
+  const auto expected = coder.encode(22.0, 20.0).units;
+  EXPECT_TRUE(coder.needs_frames(26.0, 26.0));
+  EXPECT_TRUE(coder.needs_frames(1e6, 20.0));  // no trajectories: analyses again
+  a.frames.xyz = {};
+  const auto units = coder.encode(22.0, 20.0).units;
+  ASSERT_EQ(units.size(), expected.size());
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    EXPECT_EQ(units[i].payload, expected[i].payload) << i;
+  }
+}
+
+TEST(SkinnedSpanCoder, CountsItsFactors) {
+  const Outcome outcome = encode(Animation(bending), 4.0, fast());
+  const std::uint64_t bones = outcome.gof.clusters;
+  const std::uint64_t trajectories = outcome.gof.components;
+  EXPECT_GT(trajectories, 0U);
+  EXPECT_EQ(outcome.gof.num_factors,
+            6 * bones * 20 + 3 * kVertices + trajectories * (kVertices + 3 * 20));
+}
+
+}  // namespace
+}  // namespace rlpc

@@ -1,0 +1,293 @@
+#include "encoder/codec/sequence/span_batch.h"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <utility>
+
+#include "common/parallel/for_each.h"
+#include "encoder/codec/spans/lagrangian.h"
+
+namespace rlpc {
+namespace {
+
+// Calls pass(g), which returns an error or none, for all g < count on several threads. Returns
+// the error of the lowest g, as if the calls had been in order.
+std::optional<InputError> for_each_span(
+    std::size_t count, const std::function<std::optional<InputError>(std::size_t)>& pass) {
+  std::vector<std::optional<InputError>> errors(count);
+  std::atomic<std::size_t> failed = count;  // the lowest so far
+  for_each(count, [&](std::size_t g) {
+    if (g > failed) return;
+    errors[g] = pass(g);
+    if (!errors[g]) return;
+    for (std::size_t now = failed; g < now && !failed.compare_exchange_weak(now, g);) {
+    }
+  });
+  return failed < count ? errors[failed] : std::nullopt;
+}
+
+}  // namespace
+
+void count_patterns(const std::vector<InterChoice>& choices,
+                    std::vector<PatternCount>& counts) {
+  for (const InterChoice& choice : choices) {
+    const auto same = [&](const PatternCount& count) {
+      return count.pattern == choice.pattern && count.patches == choice.num_patches;
+    };
+    auto found = std::find_if(counts.begin(), counts.end(), same);
+    if (found == counts.end()) {
+      found = counts.insert(found, {choice.pattern, choice.num_patches, 0});
+    }
+    ++found->gofs;
+  }
+}
+
+SpanBatch::SpanBatch(const SequenceCoding& coding, FrameSource& source,
+                     const std::vector<FrameRange>& spans, const Options& options)
+    : coding_(coding), source_(source), options_(options), spans_(spans.size()) {
+  if (!coding.has_models()) options_.has_followers = false;
+  for (std::size_t g = 0; g < spans.size(); ++g) {
+    Span& span = spans_[g];
+    span.range = spans[g];
+    if (!coding.has_models()) continue;
+    span.has_followers = options.has_followers || g + 1 < spans.size();
+    if (g > 0 || options.model) span.vertices = Vertices::kUndecided;
+  }
+}
+
+std::uint32_t SpanBatch::num_frames() const {
+  std::uint32_t sum = 0;
+  for (const Span& span : spans_) sum += span.range.count;
+  return sum;
+}
+
+bool SpanBatch::use_last_resort() {
+  if (!coding_.has_last_resort()) return false;
+  is_last_resort_ = true;
+  for (Span& span : spans_) {
+    span.coder.reset();
+    span.vertices = Vertices::kOwn;
+  }
+  return true;
+}
+
+void SpanBatch::choose_again() {
+  for (Span& span : spans_) span.coder.reset();
+}
+
+bool SpanBatch::uses_earlier_models() const {
+  return std::any_of(spans_.begin(), spans_.end(),
+                     [](const Span& span) { return span.vertices == Vertices::kOfEarlier; });
+}
+
+bool SpanBatch::use_own_models() {
+  const bool changed = uses_earlier_models();
+  for (Span& span : spans_) span.vertices = Vertices::kOwn;
+  return changed;
+}
+
+void SpanBatch::set_done(Span& span, double done) {
+  const std::lock_guard lock(counting_);
+  if (!progress_ || done <= span.done) return;
+  span.done = done;
+  double sum = 0.0;
+  for (const Span& any : spans_) sum += any.done;
+  progress_(sum / static_cast<double>(spans_.size()));
+}
+
+std::optional<InputError> SpanBatch::read(Span& span) {
+  if (!span.frames.xyz.empty()) return std::nullopt;
+  const std::lock_guard lock(reading_);
+  auto frames = coding_.read_frames(source_, span.range);
+  if (!frames) return frames.error();
+  span.frames = std::move(*frames);
+  span.frames.first_frame += options_.first_frame;
+  span.frames.has_followers = span.has_followers;
+  return std::nullopt;
+}
+
+std::optional<InputError> SpanBatch::prepare(Span& span, double step, double analysis_step) {
+  const bool needed = !span.coder || span.coder->needs_frames(step, analysis_step);
+  if (needed || span.vertices == Vertices::kUndecided) {
+    if (auto error = read(span)) return error;
+  }
+  if (!span.coder) {
+    span.coder = coding_.make_coder(span.frames, is_last_resort_);
+    span.coder->set_progress([this, &span](double done) { set_done(span, done); });
+  }
+  return std::nullopt;
+}
+
+std::optional<InputError> SpanBatch::analyse(double analysis_step, const Progress& progress) {
+  if (!options_.keep_analyses) return std::nullopt;
+  progress_ = progress;
+  return for_each_span(spans_.size(), [&](std::size_t g) -> std::optional<InputError> {
+    Span& span = spans_[g];
+    if (auto error = prepare(span, analysis_step, analysis_step)) return error;
+    span.coder->analyse(analysis_step);
+    span.frames = {};
+    return std::nullopt;
+  });
+}
+
+std::function<double(double step)> SpanBatch::expected_error() const {
+  std::vector<const SpanCoder*> coders;
+  for (const Span& span : spans_) {
+    if (span.vertices == Vertices::kOfEarlier) return {};
+    if (!span.coder || !span.coder->expected_error(1.0)) return {};
+    coders.push_back(span.coder.get());
+  }
+  return [coders = std::move(coders)](double step) {
+    double error = 0.0;
+    for (const SpanCoder* coder : coders) error += coder->expected_error(step).value_or(0.0);
+    return error;
+  };
+}
+
+InputResult<SpanBatch::MeasuredSpan> SpanBatch::measure(Span& span,
+                                                        const EncodedSpan& encoded) {
+  MetricsAccumulator metrics(coding_.header().num_vertices);
+  auto hash_units = coding_.measure({source_, reading_}, span.range, encoded.frame, metrics);
+  if (!hash_units) return hash_units.error();
+  std::vector<GofBytes> gofs =
+      write_gof_units(encoded, span.range, coding_.header().open_end_flag);
+  for (std::size_t g = 0; g < gofs.size(); ++g) {
+    if (!gofs[g].has_own_hashes) gofs[g].hash_unit = std::move((*hash_units)[g]);
+  }
+  std::vector<DecodedFrame> kept;
+  const std::uint32_t first = options_.first_frame + span.range.first;
+  for (const std::uint32_t frame : options_.kept_frames) {
+    if (frame < first || frame - first >= span.range.count) continue;
+    kept.push_back({frame, {}});
+    kept.back().positions.resize(3 * std::size_t{coding_.header().num_vertices});
+    encoded.frame(frame - first, kept.back().positions);
+  }
+  return MeasuredSpan{{std::move(gofs), LevelNeeds(encoded), encoded.clusters,
+                       encoded.components, options_.keep_decoded ? encoded.frame : nullptr,
+                       encoded.model, encoded.cut, encoded.choices, std::move(kept)},
+                      std::move(metrics)};
+}
+
+InputResult<SpanBatch::MeasuredSpan> SpanBatch::encode(Span& span, double step,
+                                                       double analysis_step) {
+  if (auto error = prepare(span, step, analysis_step)) return *error;
+  const EncodedSpan encoded = span.coder->encode(step, analysis_step);
+  if (!options_.keep_analyses) span.coder->release_analysis();
+  const bool is_undecided = span.vertices == Vertices::kUndecided;
+  const double cost = is_undecided ? lagrangian_cost(encoded, span.frames, step) : 0.0;
+  if (!options_.keep_analyses || !span.coder->needs_frames(step, analysis_step)) {
+    span.frames = {};
+  }
+  auto measured = measure(span, encoded);
+  if (measured) measured->cost = cost;
+  return measured;
+}
+
+// None: it costs at least `most`.
+InputResult<std::optional<SpanBatch::MeasuredSpan>> SpanBatch::encode_with(
+    const KeptModel& model, Span& span, double step, double most) {
+  if (auto error = read(span)) return *error;
+  const auto encoded = coding_.encode_with(model, span.frames, step, most);
+  span.frames = {};
+  if (!encoded) return std::optional<MeasuredSpan>();
+  auto measured = measure(span, *encoded);
+  if (!measured) return measured.error();
+  return std::optional(std::move(*measured));
+}
+
+// At equal step, if its cost is lower.
+bool SpanBatch::is_better(const MeasuredSpan& with_model, const MeasuredSpan& own) const {
+  const std::uint32_t level_idc = coding_.header().level_idc;
+  const auto level = [&](const MeasuredSpan& span) {
+    return span.coded.needs.level_from(level_idc).value_or(kMaxLevelIdc + 1);
+  };
+  if (level(with_model) > level(own)) return false;
+  // The Lagrangian cost does not predict the largest error.
+  return !coding_.has_largest_error() ||
+         with_model.metrics.result().max_error <= own.metrics.result().max_error;
+}
+
+// Encodes a span with an earlier model, and keeps whichever is better.
+std::optional<InputError> SpanBatch::decide(const std::shared_ptr<const KeptModel>& model,
+                                            Span& span, double step,
+                                            std::optional<MeasuredSpan>& measured) {
+  span.vertices = Vertices::kOwn;
+  if (!model) return std::nullopt;
+  auto other = encode_with(*model, span, step, measured->cost);
+  if (!other) return other.error();
+  if (!*other || !is_better(**other, *measured)) return std::nullopt;
+  measured = std::move(*other);
+  span.vertices = Vertices::kOfEarlier;
+  if (span.coder) span.coder->release_analysis();
+  return std::nullopt;
+}
+
+// Encodes some spans. Those with vertices of their own do not depend on others, and come first.
+//
+//   model  in force before them; then, after them
+std::optional<InputError> SpanBatch::encode_some(SpanRange spans, double step,
+                                                 double analysis_step,
+                                                 std::shared_ptr<const KeptModel>& model,
+                                                 Measured& measured) {
+  const auto encode_own = [&](std::size_t i) -> std::optional<InputError> {
+    Span& span = spans_[spans.first + i];
+    if (span.vertices == Vertices::kOfEarlier) return std::nullopt;
+    auto own = encode(span, step, analysis_step);
+    if (!own) return own.error();
+    measured[spans.first + i] = std::move(*own);
+    set_done(span, 1.0);
+    return std::nullopt;
+  };
+  if (auto error = for_each_span(spans.count, encode_own)) return error;
+  Models models(spans.count);
+  for (std::uint32_t i = 0; i < spans.count; ++i) {
+    const std::size_t g = spans.first + i;
+    if (spans_[g].vertices == Vertices::kOfEarlier) {
+      models[i] = model;
+      continue;
+    }
+    if (spans_[g].vertices == Vertices::kUndecided) {
+      if (auto error = decide(model, spans_[g], step, measured[g])) return error;
+    }
+    if (measured[g]->coded.model) model = measured[g]->coded.model;
+    if (!options_.keep_decoded) measured[g]->coded.model.reset();
+  }
+  return for_each_span(spans.count, [&](std::size_t i) -> std::optional<InputError> {
+    if (!models[i]) return std::nullopt;
+    Span& span = spans_[spans.first + i];
+    auto with_model =
+        encode_with(*models[i], span, step, std::numeric_limits<double>::infinity());
+    if (!with_model) return with_model.error();
+    measured[spans.first + i] = std::move(*with_model);
+    set_done(span, 1.0);
+    return std::nullopt;
+  });
+}
+
+InputResult<BatchTrial> SpanBatch::encode(double step, double analysis_step,
+                                          const Progress& progress) {
+  Measured measured(spans_.size());
+  progress_ = progress;
+  std::shared_ptr<const KeptModel> model = options_.model;
+  const auto num_spans = static_cast<std::uint32_t>(spans_.size());
+  const std::uint32_t together = coding_.has_models() ? options_.together : num_spans;
+  for (std::uint32_t first = 0; first < num_spans; first += together) {
+    const SpanRange spans{first, std::min(together, num_spans - first)};
+    if (auto error = encode_some(spans, step, analysis_step, model, measured)) {
+      return *error;
+    }
+  }
+  for (Span& span : spans_) span.done = 0.0;
+  BatchTrial trial;
+  MetricsAccumulator metrics(coding_.header().num_vertices, options_.metrics);
+  for (std::optional<MeasuredSpan>& of_span : measured) {
+    for (const GofBytes& gof : of_span->coded.gofs) trial.gof_bytes += gof.size();
+    metrics.append(of_span->metrics);
+    trial.spans.push_back(std::move(of_span->coded));
+  }
+  trial.metrics = metrics.result();
+  return trial;
+}
+
+}  // namespace rlpc

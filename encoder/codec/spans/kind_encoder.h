@@ -1,0 +1,42 @@
+// The interface of a kind of GOF (clusters or a skinned mesh); each kind has its own folder.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "encoder/codec/settings.h"
+#include "encoder/codec/spans/sequence_mesh.h"
+#include "encoder/codec/spans/span_coder.h"
+#include "encoder/codec/spans/span_frames.h"
+
+namespace rlpc {
+
+// Makes the coders of one kind of GOF.
+class KindEncoder {
+ public:
+  virtual ~KindEncoder() = default;
+  // The coder keeps a reference to the frames.
+  virtual std::unique_ptr<SpanCoder> make_coder(const SpanFrames& frames) const = 0;
+  // Whether this kind may code the frames at less cost than the likeliest kind.
+  //
+  //   components  that the likeliest kind is expected to need
+  virtual bool may_win(const SpanFrames& frames, std::uint32_t components) const = 0;
+  // Encodes the frames with the skinned model of an earlier span. None: that costs at least
+  // `most`, or is expected to, or the kind has no models.
+  virtual std::optional<EncodedSpan> encode_with(const KeptModel& /*model*/,
+                                                 const SpanFrames& /*frames*/, double /*step*/,
+                                                 double /*most*/) const {
+    return std::nullopt;
+  }
+};
+
+using KindEncoders = std::vector<std::unique_ptr<KindEncoder>>;
+
+// Null if profile or settings exclude the kind. The result keeps references to mesh and
+// settings.
+using MakeKindEncoder = std::unique_ptr<KindEncoder> (*)(const SequenceMesh& mesh,
+                                                         const EncoderSettings& settings);
+
+}  // namespace rlpc

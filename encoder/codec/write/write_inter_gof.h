@@ -1,0 +1,114 @@
+// 6.14: GOFs of frames and their frame units, writing side.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/codec/bits/bit_writer.h"
+#include "common/codec/kinds/inter/inter_contexts.h"
+#include "common/codec/kinds/inter/inter_gof.h"
+#include "common/codec/kinds/inter/patch_contexts.h"
+#include "common/codec/mesh/ordered_mesh.h"
+#include "common/codec/mesh/rest_order.h"
+#include "common/codec/syntax/sequence_header.h"
+#include "encoder/codec/write/section_writer.h"
+
+namespace rlpc {
+
+// 6.14 frames_in_gof( ): the payload of the GOF unit. Settings must be legal.
+std::vector<std::uint8_t> write_inter_gof_unit(const GofHeader& gof,
+                                               const InterSettings& settings,
+                                               const Topology& topology);
+
+// Writes frame units, residual by residual: an encoder can choose each by its cost.
+class FrameUnitWriter {
+ public:
+  // Mesh and settings must outlive it.
+  FrameUnitWriter(const OrderedMesh& mesh, const InterSettings& settings,
+                  bool is_open_ended = false)
+      : settings_(settings),
+        is_open_ended_(is_open_ended),
+        contexts_(mesh, settings.layer_group_size.size(), settings.pattern.num_depths()),
+        patch_contexts_(settings.num_patches, settings.pattern.num_depths()),
+        units_(settings.pattern.temporal_layers) {}
+
+  // Each frame, in coding order: start_frame(), with its place, and for each of its layer
+  // groups start_group(), the vertices of its layers in the order of the mesh but for those
+  // that patches move alone, and end_group(). If the GOF has patches, set_patches() comes
+  // second in each frame but the first. finish_unit() comes after each layer group; or, if
+  // there is only one, after one or more frames of a temporal layer, but in an open-ended
+  // stream, before a frame of another.
+  void start_frame(std::uint32_t place, const FramePlace& frame);
+  // Then, if it is predicted from the frame so many places before, in place of its references.
+  void set_reference(std::uint32_t distance) { reference_distance_ = distance; }
+  void set_patches(const FramePatches& patches) { patches_ = patches; }
+  void start_group(std::uint32_t layer_group);
+  // In place of the vertices of a first frame with an order of its own: residuals,
+  // [num_vertices][3], and counterparts, [num_vertices] or empty.
+  void write_positions(const RestOrder& order, std::span<const std::int32_t> residuals,
+                       std::span<const Counterpart> counterparts);
+  // In place of these: the frame repeats the one so many places before.
+  void repeat(const FramePlace& frame, std::uint32_t distance);
+  // For each vertex start(), then write() for each axis.
+  void start(std::uint32_t v) { contexts_.start(v); }
+  InterContexts& contexts() { return contexts_; }
+  const PatchContexts& patch_contexts() const { return patch_contexts_; }
+  void write(std::int32_t residual);
+  // frame_crc: used in the last layer group if the GOF has hashes of frames.
+  void end_group(std::uint32_t frame_crc = 0);
+  // Of the unit of a temporal layer: the frames in it, and the bytes of its section so far.
+  std::size_t unit_frames(std::uint32_t layer) const { return units_[layer].frames.size(); }
+  std::size_t unit_bytes(std::uint32_t layer) const {
+    return units_[layer].section ? units_[layer].section->size() : 0;
+  }
+  // Its payload; it must have frames.
+  std::vector<std::uint8_t> finish_unit(std::uint32_t layer);
+
+ private:
+  struct UnitFrame {
+    std::uint32_t frame = 0;
+    std::uint32_t distance = 0;  // of the frame that it repeats, or is predicted from; or 0
+    bool is_repeated = false;
+    std::uint32_t crc = 0;
+  };
+
+  struct Unit {
+    std::uint32_t layer_group = 0;
+    std::vector<UnitFrame> frames;
+    std::optional<SectionWriter> section;
+  };
+
+  Unit& unit_of(const FramePlace& frame) {
+    return units_[settings_.pattern.temporal_layer(frame.depth)];
+  }
+  void write_patches();
+
+  const InterSettings& settings_;
+  bool is_open_ended_;
+  InterContexts contexts_;
+  PatchContexts patch_contexts_;
+  FramePatches patches_;  // of the frame
+  std::uint32_t reference_distance_ =
+      0;  // of the frame; 0: it has the references of its pattern
+  std::uint32_t frame_ = 0;
+  std::vector<Unit> units_;  // [temporal layer]
+  Unit* unit_ = nullptr;     // of the frame
+};
+
+// 6.14.2 gof_end( ): the payload of a frame unit that ends a GOF of an open-ended stream.
+std::vector<std::uint8_t> write_gof_end(std::uint32_t num_frames);
+
+// Payloads of a GOF unit, and of its frame units.
+struct InterGofPayloads {
+  std::vector<std::uint8_t> first;
+  std::vector<std::vector<std::uint8_t>> frames;
+};
+// The whole GOF, with the layer groups that each frame has. frames_per_unit: at most; several
+// share a unit only if there is one layer group, and if they are of one temporal layer.
+InterGofPayloads write_inter_gof(const InterGof& gof, const OrderedMesh& mesh,
+                                 std::uint32_t frames_per_unit = 1);
+
+}  // namespace rlpc
