@@ -63,7 +63,7 @@ std::unique_ptr<LoadedGof> Decoder::Impl::loaded(std::uint64_t offset, std::uint
 
 Result<bool> Decoder::Impl::load_gof() {
   leave_gof();
-  if (prefetch_) prefetch_->hand_over_models();
+  if (prefetch_) prefetch_->hand_over_rigs();
   const auto unit = stream_.find_gof();
   if (!unit) return unit.error();
   if (!*unit) return false;
@@ -108,7 +108,7 @@ Result<std::unique_ptr<LoadedGof>> Decoder::Impl::read_gof(const UnitHeader& uni
   if (!access_unit) return access_unit.error();
   return loaded(
       unit.offset, stream_.offset(),
-      prepare(std::move(*access_unit), stream_.context(), models_, max_cached_bytes_ / 2));
+      prepare(std::move(*access_unit), stream_.context(), rigs_, max_cached_bytes_ / 2));
 }
 
 Result<bool> Decoder::Impl::go_to_gof_of(std::uint32_t frame) {

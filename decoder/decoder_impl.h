@@ -85,7 +85,7 @@ class Decoder::Impl : public Owned {
                        std::span<std::int32_t> positions) const;
 
   StreamReader stream_;
-  ModelRecons models_;
+  RigRecons rigs_;
   bool verify_hashes_;
   std::uint32_t coarse_layers_;
   std::optional<CoarseOutput> coarse_;

@@ -14,7 +14,7 @@ static_assert(kBandFrames == kFramesHeld);
 
 Decoder::Impl::Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
     : stream_(std::move(source), options),
-      models_(stream_.context()),
+      rigs_(stream_.context()),
       verify_hashes_(options.verify_hashes),
       coarse_layers_(options.coarse_layers),
       num_threads_(std::clamp(options.threads, 1U, kMaxThreads)),
@@ -23,7 +23,7 @@ Decoder::Impl::Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& op
       cache_(options.max_cached_bytes),
       band_(num_threads_),
       forward_only_(options.forward_only) {
-  stream_.models().when_dropped([this] { models_.erase_unused(); });
+  stream_.rigs().when_dropped([this] { rigs_.erase_unused(); });
   // A trace follows the order of the stream.
   wants_prefetch_ = num_threads_ > 1 && options.trace == nullptr;
   const std::uint32_t others = std::max(1U, num_threads_ - 1);
@@ -34,7 +34,7 @@ Result<bool> Decoder::Impl::open() {
   if (auto ok = stream_.open(); !ok) return ok;
   // Prefetching would wait for GOFs that are yet to come.
   if (wants_prefetch_ && !stream_.header().open_end_flag) {
-    prefetch_.emplace(stream_, models_, threads_, prefetch_bytes_, max_cached_bytes_ / 2,
+    prefetch_.emplace(stream_, rigs_, threads_, prefetch_bytes_, max_cached_bytes_ / 2,
                       num_threads_ - 1);
   }
   if (coarse_layers_ != SliceCut::kAll) {

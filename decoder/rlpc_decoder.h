@@ -13,7 +13,7 @@
 //   }
 //
 // Nothing throws but std::bad_alloc, after which a Decoder can only be destroyed. Memory is
-// bounded by one GOF, the skinned models that it could use (at most eight, which count towards
+// bounded by one GOF, the shared rigs that it could use (at most eight, which count towards
 // the limits of a GOF) and one that is being replaced, plus four frames and max_cached_bytes;
 // every size in a stream is checked against its level and DecodeLimits before anything is
 // allocated. A Decoder is used by one thread at a time; different Decoders are independent.
@@ -52,8 +52,8 @@ struct GofRange {
 // Estimated, upper bounds.
 struct DecoderMemory {
   std::uint64_t stream_bytes = 0;  // connectivity, what follows from it, four frames
-  std::uint64_t gof_bytes = 0;     // of the GOF in use, without skinned models that it shares
-  std::uint64_t cached_bytes = 0;  // of those kept, with their skinned models
+  std::uint64_t gof_bytes = 0;     // of the GOF in use, without shared rigs that it shares
+  std::uint64_t cached_bytes = 0;  // of those kept, with their shared rigs
 };
 
 class Decoder {

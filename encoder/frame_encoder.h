@@ -16,9 +16,9 @@
 // GOFs have equal length, at most settings.gof_frames (by default 128, or 256 in the High
 // profile). Each is encoded when its last frame has been added, and its bytes are passed to the
 // sink at once. In the High profile, several GOFs are held and encoded together, a *span*, so
-// that they share a skinned model: FrameFormat::max_held_frames. Later spans use that model,
+// that they share a shared rig: FrameFormat::max_held_frames. Later spans use that rig,
 // too, if a new one costs more. Memory is that of the mesh, one span and its analysis, and a
-// skinned model, plus 32 bytes per GOF for the index, whatever the length of the sequence.
+// shared rig, plus 32 bytes per GOF for the index, whatever the length of the sequence.
 //
 // encode() meets the target over the whole sequence; here each span (outside the High profile:
 // each GOF) meets it separately, with the same tolerance: a KG error relative to the spread of

@@ -30,7 +30,7 @@ struct BoneRecipe {
   std::uint32_t origin_between = 0;
 };
 
-// 6.5 and 6.11, of a GOF that begins with frame 0; 6.13, of a skinned model; and 6.13.1, of a
+// 6.5 and 6.11, of a GOF that begins with frame 0; 6.13, of a shared rig; and 6.13.1, of a
 // GOF that uses it.
 struct SkinnedGofRecipe {
   std::uint32_t num_gof_frames_minus1 = 0;
@@ -68,21 +68,21 @@ struct SkinnedGofRecipe {
     w.append(bone_section(true, true));
     return w.take();
   }
-  std::vector<std::uint8_t> model_payload(std::uint32_t model_idx) const {
+  std::vector<std::uint8_t> rig_payload(std::uint32_t rig_idx) const {
     BitWriter w;
-    w.u(3, model_idx);
+    w.u(3, rig_idx);
     rig_header(w, true);
     w.byte_alignment();
     w.append(bone_section(true, false));
     return w.take();
   }
-  std::vector<std::uint8_t> tracks_payload(std::uint32_t gof_kind, std::uint32_t model_idx,
+  std::vector<std::uint8_t> tracks_payload(std::uint32_t gof_kind, std::uint32_t rig_idx,
                                            std::uint32_t num_local_groups) const {
     BitWriter w;
     w.ue(0);
     w.ue(num_gof_frames_minus1);
     w.u(2, gof_kind);
-    w.u(3, model_idx);
+    w.u(3, rig_idx);
     levels_of_tracks(w);
     w.ue(num_local_groups);
     w.byte_alignment();
@@ -179,7 +179,7 @@ class SliceRecipe : public SectionRecipe {
     for (std::uint32_t k = 4; k < temporal_predictor; ++k) section.bypass(9, temporal_weight);
     for (std::uint32_t i = 0; i < 3 * num_frames; ++i) residual(models.trajectory[0], 0, 0);
   }
-  // 6.12.1, of a skinned model.
+  // 6.12.1, of a shared rig.
   void spatial_header(std::int32_t spatial_bits_delta) {
     field(HeaderField::kSpatialBits, spatial_bits_delta);
   }

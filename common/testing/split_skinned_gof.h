@@ -1,4 +1,4 @@
-// A random skinned GOF divided into a skinned model and a GOF that uses it, for tests.
+// A random skinned GOF divided into a shared rig and a GOF that uses it, for tests.
 #pragma once
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 
 namespace rlpc {
 
-// The bones and trajectories of a skinned model have no motion.
-inline void remove_motion(SkinnedModel& model) {
-  for (Bone& bone : model.bones) {
+// The bones and trajectories of a shared rig have no motion.
+inline void remove_motion(SharedRig& rig) {
+  for (Bone& bone : rig.bones) {
     Bone still;
     still.parent = bone.parent;
     still.pivot = bone.pivot;
@@ -20,7 +20,7 @@ inline void remove_motion(SkinnedModel& model) {
     still.origin_flag = bone.origin_flag;
     bone = still;
   }
-  for (Trajectory& t : model.trajectories) {
+  for (Trajectory& t : rig.trajectories) {
     const int spatial_bits = t.spatial_bits;
     t = {};
     t.spatial_bits = spatial_bits;
@@ -33,9 +33,9 @@ class SplitSkinnedGof {
       : whole(seed, sizes), state_(seed) {
     whole.header.profile_idc = kProfileHigh;
     const std::uint32_t num_groups = whole.gof.num_component_groups;
-    const std::size_t of_model = random() % (num_groups + 1);
-    make_model(of_model);
-    make_tracks(of_model);
+    const std::size_t of_rig = random() % (num_groups + 1);
+    make_rig(of_rig);
+    make_tracks(of_rig);
     if (tracks.trajectories.size() == whole.gof.trajectories.size()) return;
     // Without tracks: as if they were zero.
     for (std::size_t l = tracks.trajectories.size(); l < whole.gof.trajectories.size(); ++l) {
@@ -44,46 +44,46 @@ class SplitSkinnedGof {
   }
 
   RandomSkinnedGof whole;  // with all component groups, in one GOF
-  std::uint32_t model_idx = 0;
-  std::shared_ptr<const SkinnedModel> model;  // with its first component groups
+  std::uint32_t rig_idx = 0;
+  std::shared_ptr<const SharedRig> rig;  // with its first component groups
   SkinnedGof tracks;                          // with the motion, and the other groups
 
  private:
-  void make_model(std::size_t of_model) {
+  void make_rig(std::size_t of_rig) {
     const SkinnedGof& gof = whole.gof;
-    model_idx = static_cast<std::uint32_t>(random() % kMaxModels);
-    auto made = std::make_shared<SkinnedModel>(gof);
-    made->num_component_groups = static_cast<std::uint32_t>(of_model);
-    made->slice_layers.resize(of_model + 1);
-    made->group_end.resize(std::min(of_model + 1, gof.group_end.size()));
-    made->vertex_residual.resize(std::min(of_model + 1, gof.vertex_residual.size()));
+    rig_idx = static_cast<std::uint32_t>(random() % kMaxRigs);
+    auto made = std::make_shared<SharedRig>(gof);
+    made->num_component_groups = static_cast<std::uint32_t>(of_rig);
+    made->slice_layers.resize(of_rig + 1);
+    made->group_end.resize(std::min(of_rig + 1, gof.group_end.size()));
+    made->vertex_residual.resize(std::min(of_rig + 1, gof.vertex_residual.size()));
     made->trajectories.resize(made->group_end.back() - kRestFactors);
     remove_motion(*made);
-    model = std::move(made);
+    rig = std::move(made);
   }
 
-  void make_tracks(std::size_t of_model) {
+  void make_tracks(std::size_t of_rig) {
     const SkinnedGof& gof = whole.gof;
     const std::size_t with_slices = gof.group_end.size();  // groups, with that of influences
     tracks = gof;
     tracks.kind = GofKind::kSharedRig;
-    tracks.model = model;
-    tracks.model_idx = model_idx;
-    tracks.num_component_groups = model->num_component_groups;
-    tracks.num_local_groups = gof.num_component_groups - model->num_component_groups;
+    tracks.rig = rig;
+    tracks.rig_idx = rig_idx;
+    tracks.num_component_groups = rig->num_component_groups;
+    tracks.num_local_groups = gof.num_component_groups - rig->num_component_groups;
     tracks.rest_step = 1;
     tracks.rest = {};
     tracks.counterparts.clear();
     tracks.influences.clear();
-    tracks.group_end = {model->group_end.back()};
+    tracks.group_end = {rig->group_end.back()};
     tracks.vertex_residual = {{}};
-    for (std::size_t group = of_model + 1; group < with_slices; ++group) {
+    for (std::size_t group = of_rig + 1; group < with_slices; ++group) {
       tracks.group_end.push_back(gof.group_end[group]);
       tracks.vertex_residual.push_back(gof.vertex_residual[group]);
     }
-    if (with_slices <= of_model + 1) drop_last_tracks(with_slices);
+    if (with_slices <= of_rig + 1) drop_last_tracks(with_slices);
     for (std::size_t l = 0;
-         l < std::min(model->trajectories.size(), tracks.trajectories.size()); ++l) {
+         l < std::min(rig->trajectories.size(), tracks.trajectories.size()); ++l) {
       if (random() % 4 != 0) continue;
       Trajectory& t = tracks.trajectories[l];
       const int spatial_bits = t.spatial_bits;
@@ -93,11 +93,11 @@ class SplitSkinnedGof {
       make_still(whole.gof.trajectories[l]);
     }
   }
-  // Some of the groups of the model have no tracks.
+  // Some of the groups of the rig have no tracks.
   void drop_last_tracks(std::size_t with_slices) {
     std::size_t kept = with_slices;
     while (kept > 1 && random() % 3 == 0) --kept;
-    tracks.trajectories.resize(model->group_end[kept - 1] - kRestFactors);
+    tracks.trajectories.resize(rig->group_end[kept - 1] - kRestFactors);
     for (std::size_t group = kept; group < tracks.slice_layers.size(); ++group) {
       tracks.slice_layers[group] = 0;
       if (!tracks.temporal_layers.empty()) tracks.temporal_layers[group] = 0;

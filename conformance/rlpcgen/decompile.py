@@ -12,8 +12,8 @@ import specdec  # found through stream_writer
 # Elements whose default is not 0, so that a recipe must give a 0.
 _NOT_ZERO = set(recipe_source.DEFAULTS) | {
     "first_frame", "num_gof_frames_minus1", "num_index_gofs_minus1", "first_gof_offset",
-    "index_gof_frames_minus1", "index_gof_bytes", "num_index_models", "index_model_idx",
-    "index_model_distance", "index_distance", "component_group_idx", "layer_group_idx",
+    "index_gof_frames_minus1", "index_gof_bytes", "num_index_rigs", "index_rig_idx",
+    "index_rig_distance", "index_distance", "component_group_idx", "layer_group_idx",
     "frame_idx",    "bone_pivot", "extra_bone"}
 _GATE_FLAGS = {"boundary_flag": "B", "close_flag": "C", "new_vertex_flag": "A",
                "glue_previous_flag": "P", "glue_next_flag": "N"}

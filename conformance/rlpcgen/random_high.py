@@ -344,7 +344,7 @@ class HighSequence(random_main.MainSequence):
 
     def _tracks(self):
         ns = self._writer.ns
-        layers = ns["ModelLayers"]
+        layers = ns["RigLayers"]
         first_local = ns["num_component_groups"] + 1
         for group in range(1, first_local):
             if layers[group] == 0 or self._n.chance(self._plan.cut_percent):

@@ -156,10 +156,10 @@ class StreamWriter:
                        HasConnectivity=0, HasVertexOrder=0, HashExpected=1, IndexWanted=1,
                        NumGofFrames=0, HasAttributes=0, WantsAsset=lambda: True,
                        WantsAttributes=lambda: "Triangles" in self.ns)
-        self.ns["StartModels"]()
+        self.ns["StartRigs"]()
         self.inferred = {}  # element -> value, or list of values, that fits what is written
         self.gof_frames = []  # num_gof_frames_minus1 of each GOF
-        self.model_indices = []  # model_idx of each skinned model
+        self.model_indices = []  # rig_idx of each skinned model
         self._model_pending = False  # a skinned model that is not decoded yet
         self.frame_hashes = []
         self.running_hash = 0
@@ -467,7 +467,7 @@ class StreamWriter:
         self.data[end:end + 4] = (written ^ change).to_bytes(4, "big")
 
     def _start_model(self):
-        self.model_indices.append(self.ns["model_idx"])
+        self.model_indices.append(self.ns["rig_idx"])
         self._model_pending = True
 
     def _finish_model(self):
@@ -476,7 +476,7 @@ class StreamWriter:
             return
         self._model_pending = False
         try:
-            self.ns["DecodeModel"]()
+            self.ns["DecodeRig"]()
         except (IndexError, KeyError, NameError, TypeError, ValueError):
             if not self.broken:
                 raise

@@ -36,8 +36,8 @@ const char* name_of_unit(std::uint8_t type_byte) {
       return "vertex order";
     case UnitType::kSlice:
       return "slice";
-    case UnitType::kModel:
-      return "skinned model";
+    case UnitType::kRig:
+      return "shared rig";
     case UnitType::kFrame:
       return "frame";
     case UnitType::kGof:

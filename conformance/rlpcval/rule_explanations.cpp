@@ -15,10 +15,10 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "Write a whole binary glTF 2.0 file, without meshes."},
     {"R-AST-03", "7.16", "An asset is not where it belongs, or there are two.",
      "It was written at the end, or before the connectivity.",
-     "Write it after the connectivity unit and before the first GOF or skinned model unit."},
+     "Write it after the connectivity unit and before the first GOF or rig unit."},
     {"R-ATT-01", "F.3", "The attribute unit is not between connectivity and the first GOF.",
      "A tool appended the unit to a stream, or copied it into one that had attributes.",
-     "Write one attribute unit after the connectivity, before all GOFs and skinned models."},
+     "Write one attribute unit after the connectivity, before all GOFs and shared rigs."},
     {"R-ATT-02", "F.3", "There are too many attribute sets.",
      "Each part of the mesh was given sets of its own.",
      "Write at most 64 sets; one set of triangles can say which part each belongs to."},
@@ -291,13 +291,13 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "index_distance is 0, the index is not directly before the end_of_sequence unit, or there "
      "are several.",
      "Write one index directly before the end, and its size into index_distance."},
-    {"R-IDX-05", "7.9", "The GOF index lists more skinned models than the sequence has frames.",
-     "Skinned models were counted once for each GOF that uses them, or reading is out of step.",
-     "List each skinned model unit once; models that no frame needs can be omitted."},
-    {"R-IDX-06", "7.9", "The skinned models of the GOF index are not those of the stream.",
+    {"R-IDX-05", "7.9", "The GOF index lists more shared rigs than the sequence has frames.",
+     "Shared rigs were counted once for each GOF that uses them, or reading is out of step.",
+     "List each rig unit once; rigs that no frame needs can be omitted."},
+    {"R-IDX-06", "7.9", "The shared rigs of the GOF index are not those of the stream.",
      "The distances were counted from GOF units, or units were inserted or removed after the "
      "index was made.",
-     "Count from the start of a skinned model unit to the start of the next; rebuild the index "
+     "Count from the start of a rig unit to the start of the next; rebuild the index "
      "when units change."},
     {"R-LVL-01", "7.3", "The mesh has more vertices than its level allows.",
      "level_idc was not chosen by the number of vertices.", "Raise level_idc (Table B-1)."},
@@ -312,9 +312,9 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "The whole animation was written as one GOF.",
      "Use shorter GOFs, or raise level_idc (Table B-1)."},
     {"R-LVL-05", "7.5.5",
-     "A GOF, with all skinned models, has more factors than its level allows.",
+     "A GOF, with all shared rigs, has more factors than its level allows.",
      "Many components, bones or trajectories over many vertices and frames.",
-     "Use fewer of them, shorter GOFs or fewer skinned models at a time, or raise level_idc "
+     "Use fewer of them, shorter GOFs or fewer shared rigs at a time, or raise level_idc "
      "(Table B-1)."},
     {"R-LVL-06", "7.5", "A GOF has more clusters, bones or patches than its level allows.",
      "Their number was chosen without regard to the level.",
@@ -341,16 +341,16 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "Text in another encoding, a byte order mark, a terminating zero byte, a trailing comma, "
      "or single quotes.",
      "Let a JSON library write the text, in UTF-8 without a byte order mark."},
-    {"R-MOD-01", "7.13.1", "A GOF uses a skinned model that is not there.",
-     "The unit of the model was lost, or the stream was joined after it; or the GOF has "
+    {"R-MOD-01", "7.13.1", "A GOF uses a shared rig that is not there.",
+     "The unit of the rig was lost, or the stream was joined after it; or the GOF has "
      "another "
-     "model_idx than the model.",
-     "Write each skinned model before the first GOF that uses it. When streams are cut or "
-     "joined, keep the models that the remaining GOFs use."},
+     "rig_idx than the rig.",
+     "Write each shared rig before the first GOF that uses it. When streams are cut or "
+     "joined, keep the rigs that the remaining GOFs use."},
     {"R-RNG-01", "9.3.2",
      "A section of the range coder is longer or shorter than its bins need.",
      "The range encoder was flushed with too many or too few bytes, or encoder and decoder "
-     "disagree about a model or a context before.",
+     "disagree about a rig or a context before.",
      "End the section with the byte after which the decoder stops exactly three bytes past it "
      "(9.3.2); compare with the traces of Annex C. If elements look like noise before the end, "
      "find the first that differs."},
@@ -454,9 +454,9 @@ constexpr std::array kWarnings = std::to_array<RuleExplanation>({
      "Write the lowest level whose limits hold, so that more decoders accept the stream."},
     {"W-MET-01", "7.10", "Several metadata units: only the last one counts.",
      "A tool added metadata without removing the old ones.", "Keep one metadata unit."},
-    {"W-MOD-01", "7.13", "No GOF uses a skinned model.",
-     "The model was replaced too early, or all its GOFs were removed or coded without it.",
-     "Write a skinned model only if a GOF uses it."},
+    {"W-MOD-01", "7.13", "No GOF uses a shared rig.",
+     "The rig was replaced too early, or all its GOFs were removed or coded without it.",
+     "Write a shared rig only if a GOF uses it."},
     {"W-SLI-01", "7.12.1", "A trajectory is zero in all frames.",
      "All its residuals became zero by quantisation.",
      "Omit trajectories that quantise to zero; in a GOF of tracks, write trajectory_flag 0."},

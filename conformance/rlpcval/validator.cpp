@@ -22,11 +22,11 @@ void StreamValidator::run() {
     if (!is_foreign()) walk();
     end_slices();
     check_due_frames();
-    end_models();
+    end_rigs();
     findings_.in_unit(std::nullopt);
     for (const GofIndexCheck& index : index_.checks) {
       compare_index(index);
-      compare_models(index);
+      compare_rigs(index);
     }
     warn_of_stream();
   } else {
@@ -88,7 +88,7 @@ void StreamValidator::lose_units() {
   next_frame_.reset();
   previous_.reset();
   gof_ = {};
-  model_ = {};
+  rig_ = {};
   doubt_models();
   report_.complete = false;
 }
@@ -103,19 +103,19 @@ bool StreamValidator::may_stand_here(const UnitHeader& unit) const {
     case UnitType::kSequenceHeader:
       return !seen(UnitType::kSequenceHeader);
     case UnitType::kConnectivity:
-      return !seen(UnitType::kConnectivity) && !seen(UnitType::kGof) && !seen(UnitType::kModel);
+      return !seen(UnitType::kConnectivity) && !seen(UnitType::kGof) && !seen(UnitType::kRig);
     case UnitType::kVertexOrder:
       return seen(UnitType::kConnectivity) && !seen(UnitType::kVertexOrder) &&
-             !seen(UnitType::kGof) && !seen(UnitType::kModel);
+             !seen(UnitType::kGof) && !seen(UnitType::kRig);
     case UnitType::kGof:
       return seen(UnitType::kConnectivity) || seen(UnitType::kGof);
-    case UnitType::kModel:
+    case UnitType::kRig:
       return units_.version_minor() > 1 &&
              (seen(UnitType::kConnectivity) || seen(UnitType::kGof));
     case UnitType::kSlice: {
       const bool behind_slice = !previous_ || previous_->type() == UnitType::kSlice;
       return units_.version_minor() > 0 &&
-             ((gof_.unit && gof_.may_have_slices) || model_.unit || behind_slice);
+             ((gof_.unit && gof_.may_have_slices) || rig_.unit || behind_slice);
     }
     case UnitType::kFrame: {
       const bool behind_frame = !previous_ || previous_->type() == UnitType::kFrame;
@@ -123,7 +123,7 @@ bool StreamValidator::may_stand_here(const UnitHeader& unit) const {
              ((gof_.unit && gof_.may_have_frames) || behind_frame);
     }
     case UnitType::kEndOfSequence:  // without a GOF, R-END-01
-      return seen(UnitType::kGof) || seen(UnitType::kModel);
+      return seen(UnitType::kGof) || seen(UnitType::kRig);
     default:
       return false;
   }
@@ -149,7 +149,7 @@ void StreamValidator::remember_place(const UnitHeader& unit) {
   previous_ = unit;
   const bool is_slice = is_slice_type(unit.type());
   if (!is_slice && unit.type() != UnitType::kGof) gof_.unit.reset();
-  if (!is_slice && unit.type() != UnitType::kModel) model_.unit.reset();
+  if (!is_slice && unit.type() != UnitType::kRig) rig_.unit.reset();
   if (unit.ancillary() && !is_known_ancillary(unit.type())) {
     findings_.warning("W-UNT-01", "unit_type", unit.offset * 8,
                       "unit_type is " + std::to_string(unit.type_byte & 0x7F));

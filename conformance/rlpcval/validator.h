@@ -8,7 +8,7 @@
 // It walks the units itself and continues after an error where it can. In addition to the
 // checks of the decoding process, it checks the requirements that a decoder need not check
 // (clause 4.6), and warns of what is legal but surely not intended. Nothing throws; memory is
-// bounded by one GOF, the skinned models it can use and one frame; limits are checked before
+// bounded by one GOF, the shared rigs it can use and one frame; limits are checked before
 // allocating.
 #pragma once
 

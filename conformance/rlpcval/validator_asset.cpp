@@ -36,11 +36,11 @@ std::string glb_problem(const std::string& glb) {
 void StreamValidator::asset(const UnitHeader& unit, const Payload& payload) {
   const auto seen = [&](UnitType type) { return seen_[static_cast<std::uint8_t>(type)] > 0; };
   if (seen(UnitType::kAsset) || !seen(UnitType::kConnectivity) || seen(UnitType::kGof) ||
-      seen(UnitType::kModel)) {
+      seen(UnitType::kRig)) {
     findings_.unchecked(
         "R-AST-03", "unit_type", unit.offset * 8,
         "an asset comes once, after the connectivity unit and before the first GOF "
-        "or skinned model");
+        "or shared rig");
     return;
   }
   BitReader r(payload, unit.payload_offset() * 8);

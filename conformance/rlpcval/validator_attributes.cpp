@@ -20,8 +20,8 @@ bool StreamValidator::has_place_for_attributes(const UnitHeader& unit) {
     text = "there is an attribute unit before";
   } else if (!seen(UnitType::kConnectivity)) {
     text = "the connectivity has not been there yet";
-  } else if (seen(UnitType::kGof) || seen(UnitType::kModel)) {
-    text = "a GOF or a skinned model was there before";
+  } else if (seen(UnitType::kGof) || seen(UnitType::kRig)) {
+    text = "a GOF or a shared rig was there before";
   }
   if (text != nullptr) findings_.unchecked("R-ATT-01", "unit_type", unit.offset * 8, text);
   return text == nullptr;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "conformance/rlpcval/validator.h"
-#include "conformance/testing/model_animation.h"
+#include "conformance/testing/rig_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
@@ -204,12 +204,12 @@ StreamBytes tangled_stream() {
 
 std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
   constexpr std::array<const char*, 6> kNames{"Rich",   "Indexed", "Tangled",
-                                              "Sliced", "Mixed",   "Models"};
+                                              "Sliced", "Mixed",   "Rigs"};
   return kNames.at(stream.index);
 }
 INSTANTIATE_TEST_SUITE_P(Streams, Damage,
                          testing::Values(rich_stream, indexed_stream, tangled_stream,
-                                         sliced_stream, mixed_stream, indexed_model_stream),
+                                         sliced_stream, mixed_stream, indexed_rig_stream),
                          stream_name);
 
 }  // namespace

@@ -25,25 +25,25 @@ void raise(T& most, std::uint64_t value) {
 
 class GofWarnings {
  public:
-  GofWarnings(const StreamContext& context, const ModelSlots& models, std::uint64_t bit_pos,
+  GofWarnings(const StreamContext& context, const RigSlots& rigs, std::uint64_t bit_pos,
               FindingList& findings, Level& needed)
       : context_(context),
-        models_(models),
+        rigs_(rigs),
         at_(bit_pos),
         findings_(findings),
         needed_(needed) {}
 
   void add(const ClusterGof& gof);
   void add(const SkinnedGof& gof);
-  void add(const SkinnedModel& model);
+  void add(const SharedRig& rig);
   void add(const InterGof& gof);
 
  private:
   std::uint64_t num_vertices() const { return context_.header.num_vertices; }
-  void add_rig(const SkinnedModel& rig);
+  void add_rig(const SharedRig& rig);
 
   const StreamContext& context_;
-  const ModelSlots& models_;
+  const RigSlots& rigs_;
   std::uint64_t at_;
   FindingList& findings_;
   Level& needed_;
@@ -92,8 +92,8 @@ void GofWarnings::add(const ClusterGof& gof) {
   }
 }
 
-// What has vertices in a GOF of bones or skinned model.
-void GofWarnings::add_rig(const SkinnedModel& rig) {
+// What has vertices in a GOF of bones or shared rig.
+void GofWarnings::add_rig(const SharedRig& rig) {
   std::vector<bool> in_use(rig.bones.size(), false);
   const OrderedMesh& mesh = (*context_.meshes)[rig.prediction];
   for (const Influences& influences : complete_influences(mesh, rig)) {
@@ -116,17 +116,17 @@ void GofWarnings::add_rig(const SkinnedModel& rig) {
   }
 }
 
-void GofWarnings::add(const SkinnedModel& model) {
-  add_rig(model);
-  raise(needed_.max_gof_factors, models_.num_factors(kMaxModels));
+void GofWarnings::add(const SharedRig& rig) {
+  add_rig(rig);
+  raise(needed_.max_gof_factors, rigs_.num_factors(kMaxRigs));
 }
 
 void GofWarnings::add(const SkinnedGof& gof) {
   std::uint64_t with_vertices = gof.trajectories.size();
   std::uint64_t factors = 3 * num_vertices();
-  if (gof.model) {
-    with_vertices -= std::min(gof.trajectories.size(), gof.model->trajectories.size());
-    factors = models_.num_factors(kMaxModels);
+  if (gof.rig) {
+    with_vertices -= std::min(gof.trajectories.size(), gof.rig->trajectories.size());
+    factors = rigs_.num_factors(kMaxRigs);
     raise(needed_.max_components, gof.trajectories.size());
   } else {
     add_rig(gof);
@@ -152,17 +152,17 @@ bool is_still(const Trajectory& trajectory) {
 }
 
 void warn_of_gof(const AccessUnit& access_unit, const StreamContext& context,
-                 const ModelSlots& models, std::uint64_t bit_pos, FindingList& findings,
+                 const RigSlots& rigs, std::uint64_t bit_pos, FindingList& findings,
                  Level& needed) {
   raise(needed.max_gof_frames, access_unit.header().num_frames);
-  GofWarnings warnings(context, models, bit_pos, findings, needed);
+  GofWarnings warnings(context, rigs, bit_pos, findings, needed);
   std::visit([&](const auto& gof) { warnings.add(gof); }, access_unit.gof);
 }
 
-void warn_of_model(const SkinnedModel& model, const StreamContext& context,
-                   const ModelSlots& models, std::uint64_t bit_pos, FindingList& findings,
+void warn_of_rig(const SharedRig& rig, const StreamContext& context,
+                   const RigSlots& rigs, std::uint64_t bit_pos, FindingList& findings,
                    Level& needed) {
-  GofWarnings(context, models, bit_pos, findings, needed).add(model);
+  GofWarnings(context, rigs, bit_pos, findings, needed).add(rig);
 }
 
 }  // namespace rlpc

@@ -1,11 +1,11 @@
-// Warnings about a GOF or skinned model: what is legal, but surely not intended; and the level
+// Warnings about a GOF or shared rig: what is legal, but surely not intended; and the level
 // that it needs.
 #pragma once
 
 #include <cstdint>
 
 #include "common/codec/kinds/access_unit.h"
-#include "common/codec/kinds/skinned/model_slots.h"
+#include "common/codec/kinds/skinned/rig_slots.h"
 #include "common/codec/syntax/stream_context.h"
 #include "conformance/rlpcval/validator_findings.h"
 
@@ -14,14 +14,14 @@ namespace rlpc {
 // Whether a trajectory is zero in all frames of a GOF.
 bool is_still(const Trajectory& trajectory);
 
-// models: those alive. bit_pos: of the payload of the GOF unit. needed: raised to what the GOF
+// rigs: those alive. bit_pos: of the payload of the GOF unit. needed: raised to what the GOF
 // needs.
 void warn_of_gof(const AccessUnit& access_unit, const StreamContext& context,
-                 const ModelSlots& models, std::uint64_t bit_pos, FindingList& findings,
+                 const RigSlots& rigs, std::uint64_t bit_pos, FindingList& findings,
                  Level& needed);
-// models: those alive, with this one.
-void warn_of_model(const SkinnedModel& model, const StreamContext& context,
-                   const ModelSlots& models, std::uint64_t bit_pos, FindingList& findings,
+// rigs: those alive, with this one.
+void warn_of_rig(const SharedRig& rig, const StreamContext& context,
+                   const RigSlots& rigs, std::uint64_t bit_pos, FindingList& findings,
                    Level& needed);
 
 }  // namespace rlpc

@@ -204,26 +204,26 @@ bool check_levels(ElementReader& r, std::uint32_t& temporal_layers) {
 }
 
 // 6.13.1 tracks_of_gof( )
-bool check_tracks(ElementReader& r, const SeenModels& models, GofHeaderCheck& gof) {
-  const auto model_idx = static_cast<std::size_t>(r.u(3, "model_idx"));
-  const SeenModel& kept = models[model_idx];
+bool check_tracks(ElementReader& r, const SeenRigs& rigs, GofHeaderCheck& gof) {
+  const auto rig_idx = static_cast<std::size_t>(r.u(3, "rig_idx"));
+  const SeenRig& kept = rigs[rig_idx];
   if (!r.supported(
-          kept.model || kept.lost, "R-MOD-01",
-          "the stream has no skinned model " + std::to_string(model_idx) + " up to here")) {
+          kept.rig || kept.lost, "R-MOD-01",
+          "the stream has no shared rig " + std::to_string(rig_idx) + " up to here")) {
     return false;
   }
   std::uint32_t temporal_layers = 1;
   const bool good_layers = check_levels(r, temporal_layers);
   const std::int64_t groups = r.ue("num_local_groups");
-  if (!kept.model || !r.readable()) return false;
-  gof.model_suspect = kept.suspect;
-  const std::uint32_t of_model = kept.model->num_component_groups;
-  const bool good = r.require(groups <= kMaxComponentGroups - of_model, "R-BON-02",
-                              "the skinned model has " + std::to_string(of_model) + " of " +
+  if (!kept.rig || !r.readable()) return false;
+  gof.rig_suspect = kept.suspect;
+  const std::uint32_t of_rig = kept.rig->num_component_groups;
+  const bool good = r.require(groups <= kMaxComponentGroups - of_rig, "R-BON-02",
+                              "the shared rig has " + std::to_string(of_rig) + " of " +
                                   at_most(kMaxComponentGroups));
   if (good) {
-    gof.slices = SliceCounts{of_model + static_cast<std::uint32_t>(groups),
-                             static_cast<std::uint32_t>(kept.model->layer_group_size.size()),
+    gof.slices = SliceCounts{of_rig + static_cast<std::uint32_t>(groups),
+                             static_cast<std::uint32_t>(kept.rig->layer_group_size.size()),
                              temporal_layers};
   }
   return check_alignment(r) && good && good_layers;
@@ -253,7 +253,7 @@ std::optional<GofKind> check_kind(ElementReader& r, const SequenceHeader& header
 // 6.5 gof( )
 GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
                                 std::optional<std::uint32_t> expected_first_frame,
-                                std::uint32_t num_layers, const SeenModels& models) {
+                                std::uint32_t num_layers, const SeenRigs& rigs) {
   GofHeaderCheck gof;
   const bool good = check_gof_frames(r, header, expected_first_frame, gof);
   gof.kind = check_kind(r, header);
@@ -266,7 +266,7 @@ GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
       gof.section_readable = check_bones(r, header, num_layers, gof);
       break;
     case GofKind::kSharedRig:
-      gof.section_readable = check_tracks(r, models, gof);
+      gof.section_readable = check_tracks(r, rigs, gof);
       break;
     case GofKind::kInter:
       gof.section_readable = check_frames(r, header, num_layers, gof);
@@ -275,15 +275,15 @@ GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
   return gof;
 }
 
-// 6.13 model( )
-ModelHeaderCheck check_model_header(ElementReader& r, const SequenceHeader& header,
+// 6.13 rig( )
+RigHeaderCheck check_rig_header(ElementReader& r, const SequenceHeader& header,
                                     std::uint32_t num_layers) {
-  ModelHeaderCheck model;
-  const std::int64_t model_idx = r.u(3, "model_idx");
-  if (!r.readable()) return model;
-  model.model_idx = static_cast<std::uint32_t>(model_idx);
-  model.section_readable = check_rig(r, header, num_layers, model.slices);
-  return model;
+  RigHeaderCheck rig;
+  const std::int64_t rig_idx = r.u(3, "rig_idx");
+  if (!r.readable()) return rig;
+  rig.rig_idx = static_cast<std::uint32_t>(rig_idx);
+  rig.section_readable = check_rig(r, header, num_layers, rig.slices);
+  return rig;
 }
 
 // 6.12 slice_unit( )
@@ -310,23 +310,23 @@ bool check_slice_header(ElementReader& r, const SliceCounts& slices) {
 
 namespace {
 
-// 6.9 index_of_models( ). False if the index is not readable to its end.
-bool check_index_of_models(ElementReader& r, std::uint32_t num_frames,
+// 6.9 index_of_rigs( ). False if the index is not readable to its end.
+bool check_index_of_rigs(ElementReader& r, std::uint32_t num_frames,
                            std::uint64_t max_memory_bytes, GofIndexCheck& index) {
-  const std::int64_t num_models = r.ue("num_index_models");
-  bool good = r.require(num_models <= num_frames, "R-IDX-05",
+  const std::int64_t num_rigs = r.ue("num_index_rigs");
+  bool good = r.require(num_rigs <= num_frames, "R-IDX-05",
                         "the sequence has " + std::to_string(num_frames) + " frames");
   std::uint64_t offset = 0;
-  for (std::int64_t m = 0; m < num_models && r.readable(); ++m) {
-    if (index.models.size() * sizeof(ModelLocation) > max_memory_bytes) {
+  for (std::int64_t m = 0; m < num_rigs && r.readable(); ++m) {
+    if (index.rigs.size() * sizeof(RigLocation) > max_memory_bytes) {
       index.too_large = true;
       return false;
     }
-    const auto model_idx = static_cast<std::uint32_t>(r.u(3, "index_model_idx"));
-    const std::int64_t distance = r.ue("index_model_distance");
+    const auto rig_idx = static_cast<std::uint32_t>(r.u(3, "index_rig_idx"));
+    const std::int64_t distance = r.ue("index_rig_distance");
     good &= r.require(distance <= kMaxCode, "R-IDX-02", at_most(kMaxCode));
     offset += static_cast<std::uint64_t>(distance);
-    index.models.push_back({offset, model_idx});
+    index.rigs.push_back({offset, rig_idx});
   }
   return good && r.readable();
 }
@@ -368,7 +368,7 @@ GofIndexCheck check_gof_index(ElementReader& r, const SequenceHeader& header,
     good = r.require(g == num_gofs && next.first_frame == num_frames, "R-IDX-01", lists + sum);
   if (g < num_gofs) return index;
   if (header.profile_idc >= kProfileHigh) {
-    good &= check_index_of_models(r, num_frames, max_memory_bytes, index);
+    good &= check_index_of_rigs(r, num_frames, max_memory_bytes, index);
     if (index.too_large) return index;
   }
   r.byte_alignment();

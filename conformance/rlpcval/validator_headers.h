@@ -9,7 +9,7 @@
 #include "common/codec/syntax/gof_header.h"
 #include "common/codec/syntax/sequence_header.h"
 #include "conformance/rlpcval/validator_elements.h"
-#include "conformance/rlpcval/validator_models.h"
+#include "conformance/rlpcval/validator_rigs.h"
 #include "decoder/codec/parse/sequence/parse_gof_index.h"
 #include "decoder/codec/parse/sequence/parse_sequence_header.h"
 
@@ -40,23 +40,23 @@ struct GofHeaderCheck {
   std::optional<GofKind> kind;        // if it could be read, or inferred
   bool section_readable = false;      // only first_frame may be wrong
   std::optional<SliceCounts> slices;  // of the units that follow, if known
-  bool model_suspect = false;         // its skinned model may be wrong
+  bool rig_suspect = false;         // its shared rig may be wrong
 };
 
 // 6.5 gof( ), up to its section. expected_first_frame: nothing if it is not known. num_layers:
-// of the mesh, for skinned GOFs; 0 if not known. models: those kept.
+// of the mesh, for skinned GOFs; 0 if not known. rigs: those kept.
 GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
                                 std::optional<std::uint32_t> expected_first_frame,
-                                std::uint32_t num_layers, const SeenModels& models);
+                                std::uint32_t num_layers, const SeenRigs& rigs);
 
-struct ModelHeaderCheck {
-  std::optional<std::uint32_t> model_idx;  // if it could be read
+struct RigHeaderCheck {
+  std::optional<std::uint32_t> rig_idx;  // if it could be read
   bool section_readable = false;
   std::optional<SliceCounts> slices;  // if known
 };
 
-// 6.13 model( ), up to its section. num_layers: as above.
-ModelHeaderCheck check_model_header(ElementReader& r, const SequenceHeader& header,
+// 6.13 rig( ), up to its section. num_layers: as above.
+RigHeaderCheck check_rig_header(ElementReader& r, const SequenceHeader& header,
                                     std::uint32_t num_layers);
 
 // 6.12 slice_unit( ) or 6.14.1 frame_unit( ), its indices. True if they are legal.
@@ -66,7 +66,7 @@ struct GofIndexCheck {
   FindingUnit unit;
   bool suspect = false;
   std::vector<GofLocation> gofs;
-  std::vector<ModelLocation> models;
+  std::vector<RigLocation> rigs;
   std::uint64_t end = 0;  // where the bytes of the last GOF end
   bool readable = false;
   bool too_large = false;  // for max_memory_bytes

@@ -1,4 +1,4 @@
-// 8.16.1: the skinned models that are kept, as the validator knows them.
+// 8.16.1: the shared rigs that are kept, as the validator knows them.
 #pragma once
 
 #include <array>
@@ -6,14 +6,14 @@
 #include <memory>
 #include <vector>
 
-#include "common/codec/kinds/skinned/model_slots.h"
+#include "common/codec/kinds/skinned/rig_slots.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "conformance/rlpcval/validator.h"
 
 namespace rlpc {
 
-struct SeenModel {
-  std::shared_ptr<const SkinnedModel> model;  // null: none that could be read
+struct SeenRig {
+  std::shared_ptr<const SharedRig> rig;  // null: none that could be read
   bool lost = false;                          // there is, or may be, one that could not be read
   bool suspect = false;
   FindingUnit place;
@@ -21,8 +21,8 @@ struct SeenModel {
   bool is_used = false;       // by a GOF so far
   std::vector<bool> moves;    // [trajectories] not still in all these GOFs
 };
-using SeenModels = std::array<SeenModel, kMaxModels>;  // by model_idx
+using SeenRigs = std::array<SeenRig, kMaxRigs>;  // by rig_idx
 
-ModelSlots slots_of(const SeenModels& models);
+RigSlots slots_of(const SeenRigs& rigs);
 
 }  // namespace rlpc

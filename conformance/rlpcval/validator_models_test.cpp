@@ -1,4 +1,4 @@
-// What the validator finds of skinned models and of the GOFs that use them.
+// What the validator finds of shared rigs and of the GOFs that use them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "conformance/rlpcval/validator_elements.h"
 #include "conformance/rlpcval/validator_findings.h"
 #include "conformance/rlpcval/validator_headers.h"
-#include "conformance/testing/model_animation.h"
+#include "conformance/testing/rig_animation.h"
 #include "conformance/testing/validator_streams.h"
 
 namespace rlpc {
@@ -20,7 +20,7 @@ bool is_in(const Ids& list, std::string_view id) {
   return std::find(list.begin(), list.end(), id) != list.end();
 }
 
-TEST(ValidatorModels, ReportsAllValuesOfAModelHeader) {
+TEST(ValidatorRigs, ReportsAllValuesOfARigHeader) {
   BitWriter w;
   w.u(3, 5);
   w.ue(256);   // num_bones_minus1, level 1
@@ -31,7 +31,7 @@ TEST(ValidatorModels, ReportsAllValuesOfAModelHeader) {
   w.u(2, 0);
   w.byte_alignment();
   const ValidationReport report =
-      validate(with_payload_of(model_stream(), UnitType::kModel, w.take()));
+      validate(with_payload_of(rig_stream(), UnitType::kRig, w.take()));
   Ids found = ids(report);
   ASSERT_GE(found.size(), 4U);
   found.resize(4);
@@ -43,36 +43,36 @@ TEST(ValidatorModels, ReportsAllValuesOfAModelHeader) {
 }
 
 // The elements of a GOF of tracks.
-Bytes tracks(std::uint32_t gof_kind, std::uint32_t model_idx, std::uint32_t num_local_groups) {
+Bytes tracks(std::uint32_t gof_kind, std::uint32_t rig_idx, std::uint32_t num_local_groups) {
   BitWriter w;
   w.ue(0);
   w.ue(1);
   w.u(2, gof_kind);
-  w.u(3, model_idx);
+  w.u(3, rig_idx);
   w.u(3, 0);  // track_levels
   w.ue(num_local_groups);
   w.byte_alignment();
   return w.take();
 }
 
-TEST(ValidatorModels, ReportsGofsWithoutTheirModel) {
+TEST(ValidatorRigs, ReportsGofsWithoutTheirRig) {
   const ValidationReport report =
-      validate(with_payload_of(model_stream(), UnitType::kGof, tracks(2, 4, 0)));
+      validate(with_payload_of(rig_stream(), UnitType::kGof, tracks(2, 4, 0)));
   EXPECT_EQ(ids(report), Ids{"R-MOD-01"});
   EXPECT_EQ(report.findings[0].severity, Severity::kUnsupported);
   EXPECT_EQ(report.gofs, 7U);
   EXPECT_FALSE(report.complete);
 }
 
-TEST(ValidatorModels, ReportsTooManyLocalGroups) {
+TEST(ValidatorRigs, ReportsTooManyLocalGroups) {
   const auto found = [](std::uint32_t groups) {
-    return ids(with_payload_of(model_stream(), UnitType::kGof, tracks(2, 0, groups)));
+    return ids(with_payload_of(rig_stream(), UnitType::kGof, tracks(2, 0, groups)));
   };
-  EXPECT_FALSE(is_in(found(253), "R-BON-02"));  // the model has 2
+  EXPECT_FALSE(is_in(found(253), "R-BON-02"));  // the rig has 2
   EXPECT_TRUE(is_in(found(254), "R-BON-02"));
 }
 
-TEST(ValidatorModels, ReportsTooManyAdaptiveValues) {
+TEST(ValidatorRigs, ReportsTooManyAdaptiveValues) {
   SequenceHeader header;
   header.profile_idc = kProfileHigh;
   header.num_vertices = 16384;
@@ -95,56 +95,56 @@ TEST(ValidatorModels, ReportsTooManyAdaptiveValues) {
     ValidationReport report;
     FindingList findings(report, 10);
     ElementReader r(payload, 0, findings);
-    EXPECT_TRUE(check_model_header(r, header, 1).slices);
+    EXPECT_TRUE(check_rig_header(r, header, 1).slices);
     EXPECT_EQ(ids(report), adaptive == 128   ? Ids{}
                            : adaptive == 129 ? Ids{"R-LVL-09"}
                                              : Ids{"R-BON-06"});
   }
 }
 
-TEST(ValidatorModels, SaysWhatIsMissingOrMisplaced) {
-  const StreamBytes good = model_stream();
-  const auto models = units_of_type(good, UnitType::kModel);
+TEST(ValidatorRigs, SaysWhatIsMissingOrMisplaced) {
+  const StreamBytes good = rig_stream();
+  const auto rigs = units_of_type(good, UnitType::kRig);
   const auto hashes = units_of_type(good, UnitType::kGofHash);
   const UnitPlace connectivity = units_of_type(good, UnitType::kConnectivity).at(0);
-  const Bytes model = unit_bytes(good, models.at(1));
+  const Bytes rig = unit_bytes(good, rigs.at(1));
   StreamBytes stream = good;
-  insert(stream, connectivity.offset, model);
+  insert(stream, connectivity.offset, rig);
   EXPECT_EQ(ids(stream).at(0), "R-UNT-05");
   // Between a GOF and its hash.
   stream = good;
-  insert(stream, hashes.at(3).offset, model);
+  insert(stream, hashes.at(3).offset, rig);
   EXPECT_TRUE(is_in(ids(stream), "R-HSH-03"));
   // Of no use, but legal; without slices, all vertices follow its first bone.
   stream = good;
-  insert(stream, hashes.at(7).end(), model);
+  insert(stream, hashes.at(7).end(), rig);
   EXPECT_EQ(ids(stream), (Ids{"W-BON-01", "W-MOD-01"}));
   EXPECT_TRUE(validate(stream).complete);
   // Its slices are left.
   stream = good;
-  erase(stream, models.at(1));
+  erase(stream, rigs.at(1));
   EXPECT_EQ(ids(stream).at(0), "R-UNT-05");
   EXPECT_TRUE(is_in(ids(stream), "R-MOD-01"));
   // Without its slices, the tracks of its component group are out of place.
   stream = good;
-  insert(stream, units_of_type(good, UnitType::kGof).at(1).offset, model);
+  insert(stream, units_of_type(good, UnitType::kGof).at(1).offset, rig);
   EXPECT_TRUE(is_in(ids(stream), "R-SLI-02"));
 }
 
-TEST(ValidatorModels, StreamsOfVersion1HaveNone) {
+TEST(ValidatorRigs, StreamsOfVersion1HaveNone) {
   const StreamBytes sliced = sliced_stream();
   StreamBytes stream = sliced;
   insert(stream, units_of_type(sliced, UnitType::kGof).at(0).offset,
-         unit_bytes(model_stream(), units_of_type(model_stream(), UnitType::kModel).at(0)));
+         unit_bytes(rig_stream(), units_of_type(rig_stream(), UnitType::kRig).at(0)));
   const ValidationReport report = validate(stream);
   EXPECT_EQ(ids(report), Ids{"R-UNT-04"});
   EXPECT_EQ(report.count(Severity::kUnsupported), 1U);
 }
 
-TEST(ValidatorModels, ContinuesAfterADamagedModel) {
-  StreamBytes stream = model_stream();
-  const UnitPlace model = units_of_type(stream, UnitType::kModel).at(1);
-  stream[model.payload() + 4] ^= 0x10;
+TEST(ValidatorRigs, ContinuesAfterADamagedRig) {
+  StreamBytes stream = rig_stream();
+  const UnitPlace rig = units_of_type(stream, UnitType::kRig).at(1);
+  stream[rig.payload() + 4] ^= 0x10;
   const ValidationReport report = validate(stream);
   EXPECT_EQ(report.first_failure()->id, std::string_view("R-UNT-03"));
   for (const Finding& f : report.findings) {
@@ -153,21 +153,21 @@ TEST(ValidatorModels, ContinuesAfterADamagedModel) {
   EXPECT_GE(report.hashed_frames, 14U);  // all but those of its GOF
 }
 
-TEST(ValidatorModels, ReportsHashesThatFitAnotherModel) {
-  // The second model with index 0 instead of the first.
-  const StreamBytes good = model_stream();
-  const auto models = units_of_type(good, UnitType::kModel);
-  Bytes payload = unit_bytes(good, models.at(1));
+TEST(ValidatorRigs, ReportsHashesThatFitAnotherRig) {
+  // The second rig with index 0 instead of the first.
+  const StreamBytes good = rig_stream();
+  const auto rigs = units_of_type(good, UnitType::kRig);
+  Bytes payload = unit_bytes(good, rigs.at(1));
   payload.assign(payload.begin() + 5, payload.end() - 4);
-  payload[0] = static_cast<std::uint8_t>(payload[0] & 0x1F);  // model_idx 0
-  const Ids found = ids(with_payload(good, models.at(1), payload));
-  EXPECT_TRUE(is_in(found, "R-MOD-01"));  // of the GOF that uses model 5
+  payload[0] = static_cast<std::uint8_t>(payload[0] & 0x1F);  // rig_idx 0
+  const Ids found = ids(with_payload(good, rigs.at(1), payload));
+  EXPECT_TRUE(is_in(found, "R-MOD-01"));  // of the GOF that uses rig 5
   EXPECT_TRUE(is_in(found, "R-SLI-01") || is_in(found, "R-SLI-02") ||
               is_in(found, "R-HSH-02") || is_in(found, "R-RNG-01"));
 }
 
-TEST(ValidatorModels, ComparesTheIndexWithTheUnits) {
-  const StreamBytes good = indexed_model_stream();
+TEST(ValidatorRigs, ComparesTheIndexWithTheUnits) {
+  const StreamBytes good = indexed_rig_stream();
   const UnitPlace index = units_of_type(good, UnitType::kGofIndex).at(0);
   const auto gofs = units_of_type(good, UnitType::kGof);
   GofIndexEntries entries;
@@ -177,50 +177,50 @@ TEST(ValidatorModels, ComparesTheIndexWithTheUnits) {
     entries.gofs.push_back({2, next - gofs[g].offset});
   }
   const std::vector<std::uint32_t> idx{0, 5, 0};
-  const auto models = units_of_type(good, UnitType::kModel);
-  for (std::size_t m = 0; m < 3; ++m) entries.models.push_back({idx[m], models[m].offset});
+  const auto rigs = units_of_type(good, UnitType::kRig);
+  for (std::size_t m = 0; m < 3; ++m) entries.rigs.push_back({idx[m], rigs[m].offset});
   // The size of the index changes, and with it index_distance.
-  const auto with_index = [&](const std::vector<ModelIndexEntry>& list) {
+  const auto with_index = [&](const std::vector<RigIndexEntry>& list) {
     GofIndexEntries changed = entries;
-    changed.models = list;
+    changed.rigs = list;
     const Bytes payload = write_gof_index(changed, kProfileHigh);
     const auto size = static_cast<std::uint32_t>(payload.size() + 9);
     return ids(with_payload_of(with_payload(good, index, payload), UnitType::kEndOfSequence,
                                write_end_of_sequence(size)));
   };
-  EXPECT_EQ(with_index(entries.models), Ids{});
-  auto list = entries.models;
-  list[1].model_idx = 4;
+  EXPECT_EQ(with_index(entries.rigs), Ids{});
+  auto list = entries.rigs;
+  list[1].rig_idx = 4;
   EXPECT_EQ(with_index(list), Ids{"R-IDX-06"});
-  list = entries.models;
+  list = entries.rigs;
   list[2].offset += 1;
   EXPECT_EQ(with_index(list), Ids{"R-IDX-06"});
-  list = entries.models;
+  list = entries.rigs;
   list.pop_back();
   EXPECT_EQ(with_index(list), Ids{"R-IDX-06"});
   list.clear();
   EXPECT_EQ(with_index(list), Ids{"R-IDX-06"});
-  list.assign(16, entries.models[0]);
+  list.assign(16, entries.rigs[0]);
   EXPECT_EQ(with_index(list), Ids{"R-IDX-06"});
-  list.assign(17, entries.models[0]);
+  list.assign(17, entries.rigs[0]);
   EXPECT_EQ(with_index(list), Ids{"R-IDX-05"});
 }
 
-TEST(ValidatorModels, WarnsOfWhatNoGofUses) {
+TEST(ValidatorRigs, WarnsOfWhatNoGofUses) {
   const ValidationReport report = [] {
-    const auto source = memory_source(ModelAnimation().idle_stream());
+    const auto source = memory_source(RigAnimation().idle_stream());
     return validate(*source, {});
   }();
   Ids found = ids(report);
   std::sort(found.begin(), found.end());
   EXPECT_EQ(found, (Ids{"W-BON-01", "W-MOD-01", "W-SLI-01"}));
   for (const Finding& f : report.findings) {
-    EXPECT_EQ(f.unit->type_byte, static_cast<std::uint8_t>(UnitType::kModel)) << f.id;
+    EXPECT_EQ(f.unit->type_byte, static_cast<std::uint8_t>(UnitType::kRig)) << f.id;
   }
 }
 
-TEST(ValidatorModels, WarnsOfALevelThatIsTooHigh) {
-  StreamBytes stream = model_stream();
+TEST(ValidatorRigs, WarnsOfALevelThatIsTooHigh) {
+  StreamBytes stream = rig_stream();
   stream[units_of(stream)[0].payload() + 1] = 2;  // level_idc
   repair_crcs(stream);
   EXPECT_EQ(ids(stream), Ids{"W-LVL-01"});

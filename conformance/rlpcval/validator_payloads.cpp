@@ -40,9 +40,9 @@ std::string hex(std::uint32_t value) {
 void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
   if (unit.ancillary() && !is_known_ancillary(unit.type())) return;
   if (unit.type() == UnitType::kGof) begin_gof(unit);
-  if (unit.type() == UnitType::kModel) begin_model(unit);
+  if (unit.type() == UnitType::kRig) begin_rig(unit);
   const auto payload = units_.payload(unit);
-  if (!payload && unit.type() == UnitType::kModel) doubt_models();
+  if (!payload && unit.type() == UnitType::kRig) doubt_models();
   if (!payload) return;
   findings_.suspect(!sound);
   switch (unit.type()) {
@@ -57,8 +57,8 @@ void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
     case UnitType::kSlice:
     case UnitType::kFrame:
       return slice(unit, *payload);
-    case UnitType::kModel:
-      return model(unit, *payload);
+    case UnitType::kRig:
+      return rig(unit, *payload);
     case UnitType::kEndOfSequence:
       return end_of_sequence(unit, *payload);
     case UnitType::kGofIndex:
@@ -167,7 +167,7 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
       lead_.context.meshes ? (*lead_.context.meshes)[Prediction::kLayers].num_layers() : 0;
   const GofHeaderCheck header =
       check_gof_header(r, lead_.header->header,
-                       surplus ? std::nullopt : gof_.expected_first_frame, num_layers, models_);
+                       surplus ? std::nullopt : gof_.expected_first_frame, num_layers, rigs_);
   const bool may_be_any = damaged || !header.kind;
   gof_.may_have_slices = may_be_any || slice_type(*header.kind) == UnitType::kSlice;
   gof_.may_have_frames = may_be_any || slice_type(*header.kind) == UnitType::kFrame;
@@ -180,7 +180,7 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
     next_frame_ = header.first_frame + header.num_frames;
   }
   if (surplus) next_frame_ = gof_.expected_first_frame;
-  gof_.suspect = damaged || lead_.connectivity_suspect || header.model_suspect;
+  gof_.suspect = damaged || lead_.connectivity_suspect || header.rig_suspect;
   findings_.suspect(gof_.suspect);
   gof_body(unit, payload, header);
 }
@@ -196,7 +196,7 @@ void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
   gof_.parser = std::make_unique<AccessUnitParser>(lead_.context, memory_limit());
   BitReader r = bits_of(unit, payload);
   if (const auto read =
-          gof_.parser->gof(r, header.first_frame, slots_of(models_), unit.end() - unit.offset);
+          gof_.parser->gof(r, header.first_frame, slots_of(rigs_), unit.end() - unit.offset);
       !read) {
     findings_.error(read.error());
     report_.complete = false;
@@ -209,7 +209,7 @@ void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
 // 6.12 slice_unit( ), 6.14.2 frame_unit( )
 void StreamValidator::slice(const UnitHeader& unit, const Payload& payload) {
   if (!can_read()) return;
-  if (model_.unit) return slice_of(model_, unit, payload);
+  if (rig_.unit) return slice_of(rig_, unit, payload);
   slice_of(gof_, unit, payload);
 }
 
@@ -242,7 +242,7 @@ void StreamValidator::slice_of(Current<Parser>& current, const UnitHeader& unit,
 
 void StreamValidator::end_slices() {
   end_gof();
-  end_model();
+  end_rig();
 }
 
 // 8.14.1: slices at the end of a GOF can be absent.
@@ -257,10 +257,10 @@ void StreamValidator::end_gof() {
   gof_.num_frames = gof_.access_unit->header().num_frames;
   findings_.in_unit(gof_.place);
   needed_.max_unit_bytes = std::max<std::uint64_t>(needed_.max_unit_bytes, gof_.unit->size);
-  warn_of_gof(*gof_.access_unit, lead_.context, slots_of(models_),
+  warn_of_gof(*gof_.access_unit, lead_.context, slots_of(rigs_),
               gof_.unit->payload_offset() * 8, findings_, needed_);
   if (const auto* skinned = std::get_if<SkinnedGof>(&gof_.access_unit->gof)) {
-    use_model(*skinned);
+    use_rig(*skinned);
   }
   gof_.frames_due = lead_.header->positions;
   // Frames of a stream that is still being made are decoded before anything else is read.

@@ -15,12 +15,12 @@
 #include "conformance/rlpcval/validator.h"
 #include "conformance/rlpcval/validator_findings.h"
 #include "conformance/rlpcval/validator_headers.h"
-#include "conformance/rlpcval/validator_models.h"
+#include "conformance/rlpcval/validator_rigs.h"
 #include "conformance/rlpcval/validator_units.h"
-#include "decoder/codec/gofs/model_recons.h"
+#include "decoder/codec/gofs/rig_recons.h"
 #include "decoder/codec/parse/access_unit_parser.h"
 #include "decoder/codec/parse/memory_limit.h"
-#include "decoder/codec/parse/model_parser.h"
+#include "decoder/codec/parse/rig_parser.h"
 #include "decoder/codec/parse/parse_gof_hash.h"
 
 namespace rlpc {
@@ -50,7 +50,7 @@ class StreamValidator {
   void read_payload(const UnitHeader& unit, bool sound);
   void sequence_header(const UnitHeader& unit, const Payload& payload);
   void check_limits();
-  // Of a GOF or skinned model.
+  // Of a GOF or shared rig.
   MemoryLimit memory_limit() const;
   void connectivity(const UnitHeader& unit, const Payload& payload);
   void vertex_order(const UnitHeader& unit, const Payload& payload);
@@ -59,7 +59,7 @@ class StreamValidator {
   void gof_body(const UnitHeader& unit, const Payload& payload, const GofHeaderCheck& header);
   void slice(const UnitHeader& unit, const Payload& payload);
   void compare_frame_crcs(const AccessUnit& access_unit);
-  // No further slice can follow: the skinned model is complete, or the access unit except for
+  // No further slice can follow: the shared rig is complete, or the access unit except for
   // its hash.
   void end_slices();
   void end_gof();
@@ -83,21 +83,21 @@ class StreamValidator {
   // validator_asset.cpp
   void asset(const UnitHeader& unit, const Payload& payload);
 
-  // validator_models.cpp: skinned models.
-  void begin_model(const UnitHeader& unit);
-  void model(const UnitHeader& unit, const Payload& payload);
-  void end_model();
+  // validator_rigs.cpp: shared rigs.
+  void begin_rig(const UnitHeader& unit);
+  void rig(const UnitHeader& unit, const Payload& payload);
+  void end_rig();
   // Those of a GOF that has been read are in use.
-  void use_model(const SkinnedGof& gof);
-  // Units were lost: models may have been replaced.
+  void use_rig(const SkinnedGof& gof);
+  // Units were lost: rigs may have been replaced.
   void doubt_models();
-  // Warns of what no GOF used, of a model that is replaced or at the end of the stream.
-  void release(const SeenModel& kept);
-  void end_models();
+  // Warns of what no GOF used, of a rig that is replaced or at the end of the stream.
+  void release(const SeenRig& kept);
+  void end_rigs();
 
   // validator_summary.cpp: findings that need the whole stream.
   void compare_index(const GofIndexCheck& index);
-  void compare_models(const GofIndexCheck& index);
+  void compare_rigs(const GofIndexCheck& index);
   void warn_of_stream();
   void warn_of_level();
 
@@ -135,7 +135,7 @@ class StreamValidator {
   };
   FirstFrame first_frame_;
 
-  // A GOF or skinned model. Parser: of its units, if those so far could be read.
+  // A GOF or shared rig. Parser: of its units, if those so far could be read.
   template <class Parser>
   struct Current {
     std::optional<UnitHeader> unit;  // if it, or a slice of it, is directly before
@@ -158,14 +158,14 @@ class StreamValidator {
   };
   CurrentGof gof_;
 
-  // The skinned model whose units were read last, and those that are kept.
-  struct CurrentModel : Current<ModelParser> {
-    std::optional<std::uint32_t> model_idx;  // if it could be read
+  // The shared rig whose units were read last, and those that are kept.
+  struct CurrentRig : Current<RigParser> {
+    std::optional<std::uint32_t> rig_idx;  // if it could be read
     std::uint64_t bit_pos = 0;               // of its payload
   };
-  CurrentModel model_;
-  SeenModels models_;
-  std::optional<ModelRecons> recons_;
+  CurrentRig rig_;
+  SeenRigs rigs_;
+  std::optional<RigRecons> recons_;
   std::optional<std::uint32_t> next_frame_ = 0;  // nothing if it is not known
   bool frames_suspect_ = false;
   Level needed_{};  // the maximum over all GOFs
@@ -173,8 +173,8 @@ class StreamValidator {
   struct Index {
     std::vector<GofLocation> gofs;  // all GOF units; first_frame only if known
     std::size_t known_first_frames = 0;
-    std::vector<ModelLocation> models;  // all skinned model units
-    bool model_indices_known = true;
+    std::vector<RigLocation> rigs;  // all rig units
+    bool rig_indices_known = true;
     std::vector<GofIndexCheck> checks;
     std::uint64_t units_found = 0;  // those that index_distance leads to
   };

@@ -53,33 +53,33 @@ void StreamValidator::compare_index(const GofIndexCheck& index) {
   }
 }
 
-// 7.9: the list has all skinned model units.
-void StreamValidator::compare_models(const GofIndexCheck& index) {
+// 7.9: the list has all rig units.
+void StreamValidator::compare_rigs(const GofIndexCheck& index) {
   if (!index.readable || gap_) return;
   findings_.in_unit(index.unit);
-  findings_.suspect(index.suspect || !index_.model_indices_known);
+  findings_.suspect(index.suspect || !index_.rig_indices_known);
   const std::uint64_t at = (index.unit.offset + kUnitHeaderBytes) * 8;
-  const std::size_t common = std::min(index.models.size(), index_.models.size());
+  const std::size_t common = std::min(index.rigs.size(), index_.rigs.size());
   for (std::size_t m = 0; m < common; ++m) {
-    const ModelLocation& listed = index.models[m];
-    const ModelLocation& found = index_.models[m];
-    const std::string which = "skinned model unit " + std::to_string(m);
+    const RigLocation& listed = index.rigs[m];
+    const RigLocation& found = index_.rigs[m];
+    const std::string which = "rig unit " + std::to_string(m);
     if (listed.offset != found.offset) {
-      return findings_.unchecked("R-IDX-06", "index_model_distance", at,
+      return findings_.unchecked("R-IDX-06", "index_rig_distance", at,
                                  which + " is listed at byte " + std::to_string(listed.offset) +
                                      ", it is at byte " + std::to_string(found.offset));
     }
-    if (index_.model_indices_known && listed.model_idx != found.model_idx) {
-      return findings_.unchecked("R-IDX-06", "index_model_idx", at,
+    if (index_.rig_indices_known && listed.rig_idx != found.rig_idx) {
+      return findings_.unchecked("R-IDX-06", "index_rig_idx", at,
                                  which + " is listed with index " +
-                                     std::to_string(listed.model_idx) + ", its model_idx is " +
-                                     std::to_string(found.model_idx));
+                                     std::to_string(listed.rig_idx) + ", its rig_idx is " +
+                                     std::to_string(found.rig_idx));
     }
   }
-  if (index.models.size() != index_.models.size()) {
-    findings_.unchecked("R-IDX-06", "num_index_models", at,
-                        std::to_string(index.models.size()) + " skinned models are listed, " +
-                            "there are " + std::to_string(index_.models.size()) + " units");
+  if (index.rigs.size() != index_.rigs.size()) {
+    findings_.unchecked("R-IDX-06", "num_index_rigs", at,
+                        std::to_string(index.rigs.size()) + " shared rigs are listed, " +
+                            "there are " + std::to_string(index_.rigs.size()) + " units");
   }
 }
 

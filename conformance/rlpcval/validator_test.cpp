@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/codec/bits/bit_writer.h"
-#include "conformance/testing/model_animation.h"
+#include "conformance/testing/rig_animation.h"
 #include "conformance/testing/validator_streams.h"
 #include "decoder/rlpc_decoder.h"
 #include "encoder/codec/write/write_cluster_gof.h"
@@ -23,7 +23,7 @@ namespace {
 
 TEST(Validator, FindsNothingInGoodStreams) {
   for (const StreamBytes& stream : {rich_stream(), indexed_stream(), sliced_stream(),
-                                    mixed_stream(), model_stream(), indexed_model_stream()}) {
+                                    mixed_stream(), rig_stream(), indexed_rig_stream()}) {
     const ValidationReport report = validate(stream);
     EXPECT_EQ(ids(report), Ids{});
     EXPECT_TRUE(report.complete);

@@ -115,7 +115,7 @@ CoarseMesh expected_mesh(const StreamBytes& stream, std::uint32_t layers) {
   return mesh;
 }
 
-// Whether a GOF or skinned model has slices that a coarse mesh does not need.
+// Whether a GOF or shared rig has slices that a coarse mesh does not need.
 bool drops_slices(const StreamBytes& stream, std::uint32_t layers) {
   const StreamSummary summary = summary_of(stream);
   const auto drops = [&](const SlicedSummary& of) {
@@ -125,8 +125,8 @@ bool drops_slices(const StreamBytes& stream, std::uint32_t layers) {
     });
   };
   return std::any_of(summary.gofs.begin(), summary.gofs.end(), drops) ||
-         std::any_of(summary.models.begin(), summary.models.end(),
-                     [&](const auto& model) { return drops(*model); });
+         std::any_of(summary.rigs.begin(), summary.rigs.end(),
+                     [&](const auto& rig) { return drops(*rig); });
 }
 
 // Returns the number of coarse meshes for which slices were dropped.
@@ -184,9 +184,9 @@ TEST(CoarseDecoding, NeedsOnlyTheLayerGroupsOfItsLayers) {
   EXPECT_GT(check(encoded(Profile::kMain, 20, 4)), 2U);
 }
 
-TEST(CoarseDecoding, WorksWithSkinnedModelsAndRestOrder) {
+TEST(CoarseDecoding, WorksWithSharedRigsAndRestOrder) {
   const StreamBytes stream = encoded(Profile::kHigh, 5, 4);
-  EXPECT_FALSE(summary_of(stream).models.empty());
+  EXPECT_FALSE(summary_of(stream).rigs.empty());
   EXPECT_GT(check(stream), 2U);
 }
 

@@ -17,7 +17,7 @@ namespace rlpc {
 namespace {
 
 constexpr double kMostLarger = 1.01;
-// Of an index that lists skinned models, and of flags of the sequence and of each GOF.
+// Of an index that lists shared rigs, and of flags of the sequence and of each GOF.
 constexpr std::size_t kMostMore = 6;
 
 using Frames = std::vector<std::vector<float>>;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/testing/model_animation.h"
+#include "conformance/testing/rig_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
@@ -237,7 +237,7 @@ TEST(ThreadsOfACut, LeaveAttributesWhole) {
 std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
   constexpr std::array<const char*, 8> kNames{
       "Baseline", "BaselineFrameHashes", "Main",   "MainFrameHashes",
-      "Mixed",    "EncodedModels",       "Models", "IndexedModels"};
+      "Mixed",    "EncodedModels",       "Rigs", "IndexedRigs"};
   return kNames.at(stream.index);
 }
 INSTANTIATE_TEST_SUITE_P(Streams, Threads,
@@ -247,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(Streams, Threads,
                                          encoded_stream<Profile::kMain, HashMode::kFrame>,
                                          mixed_stream,
                                          encoded_stream<Profile::kHigh, HashMode::kGof>,
-                                         model_stream, indexed_model_stream),
+                                         rig_stream, indexed_rig_stream),
                          stream_name);
 
 }  // namespace

@@ -133,7 +133,7 @@ TEST(FrameEncoder, OneSpanIsCodedAsByEncode) {
   EXPECT_EQ(encode_frames(source, settings, 0).bytes, encode_to_memory(source, settings));
 }
 
-TEST(FrameEncoder, GofsOfASpanShareASkinnedModel) {
+TEST(FrameEncoder, GofsOfASpanShareASharedRig) {
   MemoryFrames source = bending_tube(80, 60);
   const EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 10);
   const Encoded apart = encode_frames(source, settings, 1);

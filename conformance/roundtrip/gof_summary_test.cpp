@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "conformance/testing/model_animation.h"
+#include "conformance/testing/rig_animation.h"
 #include "conformance/testing/stream_summary.h"
 #include "decoder/rlpc_decoder.h"
 
@@ -43,29 +43,29 @@ TEST(GofSummaries, ReportsGofsAndTheirSlices) {
 }
 
 TEST(GofSummaries, CountsTheBytesOfUnits) {
-  for (const StreamBytes& stream : {sliced_stream(), mixed_stream(), model_stream()}) {
+  for (const StreamBytes& stream : {sliced_stream(), mixed_stream(), rig_stream()}) {
     std::vector<std::size_t> listed;
-    std::vector<std::size_t> listed_of_models;
-    for (const auto& model : summary_of(stream).models) {
-      listed_of_models.push_back(model->bytes);
-      for (const SliceEntry& slice : model->slices) listed_of_models.push_back(slice.bytes);
+    std::vector<std::size_t> listed_of_rigs;
+    for (const auto& rig : summary_of(stream).rigs) {
+      listed_of_rigs.push_back(rig->bytes);
+      for (const SliceEntry& slice : rig->slices) listed_of_rigs.push_back(slice.bytes);
     }
     for (const GofSummary& gof : entries_of(stream)) {
       listed.push_back(gof.bytes);
       for (const SliceEntry& slice : gof.slices) listed.push_back(slice.bytes);
     }
     std::vector<std::size_t> found;
-    std::vector<std::size_t> found_of_models;
-    bool of_model = false;
+    std::vector<std::size_t> found_of_rigs;
+    bool of_rig = false;
     for (const UnitPlace& unit : units_of(stream)) {
-      if (unit.type != UnitType::kSlice) of_model = unit.type == UnitType::kModel;
+      if (unit.type != UnitType::kSlice) of_rig = unit.type == UnitType::kRig;
       const bool of_gof = unit.type == UnitType::kGof || unit.type == UnitType::kSlice;
-      if (of_model || of_gof) {
-        (of_model ? found_of_models : found).push_back(unit.end() - unit.offset);
+      if (of_rig || of_gof) {
+        (of_rig ? found_of_rigs : found).push_back(unit.end() - unit.offset);
       }
     }
     EXPECT_EQ(listed, found);
-    EXPECT_EQ(listed_of_models, found_of_models);
+    EXPECT_EQ(listed_of_rigs, found_of_rigs);
   }
 }
 
@@ -113,48 +113,48 @@ TEST(GofSummaries, ReportsBothKindsInOneStream) {
   }
 }
 
-// Three models, the first of 2 groups of 1 and 2 trajectories; its first GOF adds 2 groups.
-TEST(GofSummaries, ReportsModelsAndTheirGofs) {
-  const StreamSummary stream = summary_of(model_stream());
-  ASSERT_EQ(stream.models.size(), 3U);
-  EXPECT_EQ(stream.models[0]->model_idx, 0U);
-  EXPECT_EQ(stream.models[1]->model_idx, 5U);
-  EXPECT_EQ(stream.models[2]->model_idx, 0U);
-  EXPECT_EQ(stream.models[0]->num_gofs, 3U);
-  EXPECT_EQ(stream.models[1]->num_gofs, 1U);
-  EXPECT_EQ(stream.models[2]->num_gofs, 2U);
-  EXPECT_EQ(stream.models[0]->figure("num_trajectories"), 3U);
-  EXPECT_EQ(stream.models[1]->figure("num_trajectories"), 1U);
+// Three rigs, the first of 2 groups of 1 and 2 trajectories; its first GOF adds 2 groups.
+TEST(GofSummaries, ReportsRigsAndTheirGofs) {
+  const StreamSummary stream = summary_of(rig_stream());
+  ASSERT_EQ(stream.rigs.size(), 3U);
+  EXPECT_EQ(stream.rigs[0]->rig_idx, 0U);
+  EXPECT_EQ(stream.rigs[1]->rig_idx, 5U);
+  EXPECT_EQ(stream.rigs[2]->rig_idx, 0U);
+  EXPECT_EQ(stream.rigs[0]->num_gofs, 3U);
+  EXPECT_EQ(stream.rigs[1]->num_gofs, 1U);
+  EXPECT_EQ(stream.rigs[2]->num_gofs, 2U);
+  EXPECT_EQ(stream.rigs[0]->figure("num_trajectories"), 3U);
+  EXPECT_EQ(stream.rigs[1]->figure("num_trajectories"), 1U);
   std::vector<int> used;
   std::vector<std::uint32_t> trajectories;
   for (const GofSummary& gof : stream.gofs) {
-    used.push_back(gof.model ? static_cast<int>(gof.model->number) : -1);
+    used.push_back(gof.rig ? static_cast<int>(gof.rig->number) : -1);
     trajectories.push_back(gof.figure("num_trajectories"));
-    EXPECT_EQ(gof.model != nullptr, gof.kind == GofKind::kSharedRig);
+    EXPECT_EQ(gof.rig != nullptr, gof.kind == GofKind::kSharedRig);
   }
   EXPECT_EQ(used, (std::vector<int>{0, 1, 0, -1, 0, -1, 2, 2}));
   EXPECT_EQ(trajectories, (std::vector<std::uint32_t>{6, 1, 3, 0, 1, 3, 0, 4}));
 }
 
-// A model and its GOFs are cut alike; local groups stay only if the model stays whole.
-TEST(GofSummaries, CutModelsAndGofsAlike) {
-  const StreamSummary stream = summary_of(model_stream());
-  const ModelSummary& model = *stream.models[0];
+// A rig and its GOFs are cut alike; local groups stay only if the rig stays whole.
+TEST(GofSummaries, CutRigsAndGofsAlike) {
+  const StreamSummary stream = summary_of(rig_stream());
+  const RigSummary& rig = *stream.rigs[0];
   const GofSummary& gof = stream.gofs[0];
   for (const std::uint32_t components : {0U, 1U, 2U, 3U, 4U, 5U, 6U}) {
     const SliceCut cut{components, SliceCut::kAll};
     const std::uint32_t kept = components < 1 ? 0 : components < 3 ? 1 : 3;
     const std::uint32_t all = components < 4 ? kept : components < 6 ? 4 : 6;
-    EXPECT_EQ(model.totals(model.groups_that_stay(cut)).num_trajectories, kept);
+    EXPECT_EQ(rig.totals(rig.groups_that_stay(cut)).num_trajectories, kept);
     EXPECT_EQ(gof.totals(gof.groups_that_stay(cut)).num_trajectories, all);
-    EXPECT_EQ(model.is_cut_by(cut), kept < 3);
+    EXPECT_EQ(rig.is_cut_by(cut), kept < 3);
     EXPECT_EQ(gof.is_cut_by(cut), all < 6);
   }
   // The third GOF has no slice of layers of its own.
   const SliceCut coarse{SliceCut::kAll, 1};
   EXPECT_EQ(stream.gofs[2].totals(stream.gofs[2].groups_that_stay(coarse)).num_slices, 2U);
   EXPECT_TRUE(stream.gofs[2].is_cut_by(coarse));
-  EXPECT_EQ(stream.gofs[2].totals({}).num_layers, model.figure("num_layers"));
+  EXPECT_EQ(stream.gofs[2].totals({}).num_layers, rig.figure("num_layers"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Streams of the High profile whose GOFs share skinned models, from the encoder to the decoder.
+// Streams of the High profile whose GOFs share shared rigs, from the encoder to the decoder.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,22 +35,22 @@ Encoded encoded(Profile profile, Target target, std::uint32_t gof_frames,
   return result;
 }
 
-TEST(HighProfile, GofsShareAModel) {
+TEST(HighProfile, GofsShareARig) {
   const Encoded high = encoded(Profile::kHigh, {Target::kKg, 0.5}, 15);
   const Encoded main = encoded(Profile::kMain, {Target::kKg, 0.5}, 15);
   EXPECT_TRUE(high.report.target_met);
   EXPECT_EQ(high.report.num_gofs, 4U);
   EXPECT_LT(high.bytes.size(), main.bytes.size() * 3 / 4);
   const StreamSummary summary = summary_of(high.bytes);
-  ASSERT_EQ(summary.models.size(), 1U);
-  EXPECT_EQ(summary.models[0]->num_gofs, 4U);
+  ASSERT_EQ(summary.rigs.size(), 1U);
+  EXPECT_EQ(summary.rigs[0]->num_gofs, 4U);
   for (const GofSummary& gof : summary.gofs) EXPECT_EQ(gof.num_frames, 15U);
 }
 
-TEST(HighProfile, ASingleGofNeedsNoModel) {
+TEST(HighProfile, ASingleGofNeedsNoRig) {
   for (const std::uint32_t frames : {60U, EncoderSettings::kWholeSequence}) {
     const Encoded high = encoded(Profile::kHigh, {Target::kKg, 0.5}, frames);
-    EXPECT_TRUE(summary_of(high.bytes).models.empty());
+    EXPECT_TRUE(summary_of(high.bytes).rigs.empty());
   }
 }
 
@@ -65,7 +65,7 @@ TEST(HighProfile, MeetsItsTargets) {
   EXPECT_EQ(rate.bytes.size(), rate.report.bytes);
 }
 
-// Many GOFs get an index, which lists the models.
+// Many GOFs get an index, which lists the rigs.
 TEST(HighProfile, FramesAreFoundByTheIndex) {
   const Encoded high = encoded(Profile::kHigh, {Target::kKg, 1.0}, 3);
   EXPECT_EQ(high.report.num_gofs, 20U);

@@ -125,19 +125,19 @@ TEST(MemoryLimit, HoldsForFrames) {
   }
 }
 
-constexpr Size kOfModel{3 * kAround, 1, 10, 50, 10};
+constexpr Size kOfRig{3 * kAround, 1, 10, 50, 10};
 
 // Also where each is used, and then replaced by another.
-TEST(MemoryLimit, HoldsForSkinnedModels) {
-  for (const std::uint32_t num_models : {1U, 8U}) {
-    SCOPED_TRACE(num_models);
-    expect_within_estimate({1, Kind::kTracks, kOfModel, tube(kOfModel.vertices), num_models, 2},
+TEST(MemoryLimit, HoldsForSharedRigs) {
+  for (const std::uint32_t num_rigs : {1U, 8U}) {
+    SCOPED_TRACE(num_rigs);
+    expect_within_estimate({1, Kind::kTracks, kOfRig, tube(kOfRig.vertices), num_rigs, 2},
                            0.3);
   }
 }
 
-// Models that have been replaced are not kept, nor are their reconstructions: one at a time.
-TEST(MemoryLimit, ReplacedModelsTakeNone) {
+// Rigs that have been replaced are not kept, nor are their reconstructions: one at a time.
+TEST(MemoryLimit, ReplacedRigsTakeNone) {
   Plan plan{1, Kind::kTracks, {3 * kAround, 1, 64, 10, 2}, tube(3 * kAround), 8, 1};
   Memory once{1U << 30, 0};
   EXPECT_FALSE(decode(stream_of(plan), once));

@@ -1,4 +1,4 @@
-// Decoding of streams with skinned models: random access, what is kept in memory, and failures.
+// Decoding of streams with shared rigs: random access, what is kept in memory, and failures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 #include "conformance/testing/count_memory.h"
 #include "conformance/testing/cut_streams.h"
-#include "conformance/testing/model_animation.h"
-#include "decoder/codec/gofs/model_recons.h"
+#include "conformance/testing/rig_animation.h"
+#include "decoder/codec/gofs/rig_recons.h"
 #include "decoder/codec/units/stream_reader.h"
 #include "decoder/rlpc_decoder.h"
 
@@ -41,11 +41,11 @@ std::string seek_to(Decoder& decoder, std::uint32_t f, Frame& frame) {
   return more ? "" : more.error().rule;
 }
 
-// Backwards, over models that are replaced; and each frame first of all.
-TEST(ModelSeeking, FindsEveryFrame) {
-  const std::vector<Frame> expected = decode_all(model_stream());
+// Backwards, over rigs that are replaced; and each frame first of all.
+TEST(RigSeeking, FindsEveryFrame) {
+  const std::vector<Frame> expected = decode_all(rig_stream());
   ASSERT_EQ(expected.size(), 16U);
-  for (const StreamBytes& stream : {model_stream(), indexed_model_stream()}) {
+  for (const StreamBytes& stream : {rig_stream(), indexed_rig_stream()}) {
     for (const std::uint32_t threads : {1U, 2U, 3U, 4U}) {
       auto decoder = Decoder::open(memory_source(stream), with_threads(threads));
       ASSERT_TRUE(decoder);
@@ -67,16 +67,16 @@ TEST(ModelSeeking, FindsEveryFrame) {
   }
 }
 
-// A damaged model does no harm to GOFs at which it is not alive.
-TEST(ModelSeeking, PassesDamagedModelsThatAreNotNeeded) {
-  const StreamBytes good = indexed_model_stream();
+// A damaged rig does no harm to GOFs at which it is not alive.
+TEST(RigSeeking, PassesDamagedRigsThatAreNotNeeded) {
+  const StreamBytes good = indexed_rig_stream();
   const std::vector<Frame> expected = decode_all(good);
-  const auto models = units_of_type(good, UnitType::kModel);
+  const auto rigs = units_of_type(good, UnitType::kRig);
   for (std::size_t m = 0; m < 3; ++m) {
     StreamBytes damaged = good;
-    damaged[models[m].payload() + 3] ^= 4;
+    damaged[rigs[m].payload() + 3] ^= 4;
     for (std::uint32_t f = 0; f < 16; ++f) {
-      SCOPED_TRACE(testing::Message() << "model " << m << ", frame " << f);
+      SCOPED_TRACE(testing::Message() << "rig " << m << ", frame " << f);
       auto decoder = Decoder::open(memory_source(damaged));
       ASSERT_TRUE(decoder);
       // The first is replaced after frame 11; the second stays to the end.
@@ -90,35 +90,35 @@ TEST(ModelSeeking, PassesDamagedModelsThatAreNotNeeded) {
   }
 }
 
-TEST(ModelSeeking, ReportsAnIndexWithAnotherModel) {
-  const StreamBytes good = indexed_model_stream();
+TEST(RigSeeking, ReportsAnIndexWithAnotherRig) {
+  const StreamBytes good = indexed_rig_stream();
   const UnitPlace index = units_of_type(good, UnitType::kGofIndex).at(0);
   const auto gofs = units_of_type(good, UnitType::kGof);
-  const auto models = units_of_type(good, UnitType::kModel);
-  const auto with_models = [&](const std::vector<ModelIndexEntry>& list) {
+  const auto rigs = units_of_type(good, UnitType::kRig);
+  const auto with_rigs = [&](const std::vector<RigIndexEntry>& list) {
     GofIndexEntries entries;
     entries.first_gof_offset = gofs[0].offset;
     for (std::size_t g = 0; g < gofs.size(); ++g) {
       const std::size_t next = g + 1 < gofs.size() ? gofs[g + 1].offset : index.offset;
       entries.gofs.push_back({2, next - gofs[g].offset});
     }
-    entries.models = list;
+    entries.rigs = list;
     const Bytes payload = write_gof_index(entries, kProfileHigh);
     const auto end = units_of(good).back();
     const auto size = static_cast<std::uint32_t>(payload.size() + 9);
     return with_payload(with_payload(good, end, write_end_of_sequence(size)), index, payload);
   };
-  const auto rule_at = [&](const std::vector<ModelIndexEntry>& list, std::uint32_t f) {
-    auto decoder = Decoder::open(memory_source(with_models(list)));
+  const auto rule_at = [&](const std::vector<RigIndexEntry>& list, std::uint32_t f) {
+    auto decoder = Decoder::open(memory_source(with_rigs(list)));
     EXPECT_TRUE(decoder);
     Frame frame;
     return seek_to(*decoder, f, frame);
   };
-  const std::vector<ModelIndexEntry> right{
-      {0, models[0].offset}, {5, models[1].offset}, {0, models[2].offset}};
+  const std::vector<RigIndexEntry> right{
+      {0, rigs[0].offset}, {5, rigs[1].offset}, {0, rigs[2].offset}};
   for (std::uint32_t f = 0; f < 16; ++f) EXPECT_EQ(rule_at(right, f), "");
   auto list = right;
-  list[1].model_idx = 6;
+  list[1].rig_idx = 6;
   EXPECT_EQ(rule_at(list, 0), "");
   EXPECT_EQ(rule_at(list, 2), "R-IDX-06");
   list = right;
@@ -131,17 +131,17 @@ TEST(ModelSeeking, ReportsAnIndexWithAnotherModel) {
   EXPECT_EQ(rule_at(list, 0), "R-IDX-05");
 }
 
-// GOFs that have lost their model, up to its successor: each is unsupported by itself.
-TEST(ModelSeeking, GoesOnAfterALostModel) {
-  const StreamBytes good = model_stream();
+// GOFs that have lost their rig, up to its successor: each is unsupported by itself.
+TEST(RigSeeking, GoesOnAfterALostRig) {
+  const StreamBytes good = rig_stream();
   const std::vector<Frame> expected = decode_all(good);
   const auto units = units_of(good);
-  const auto model = units_of_type(good, UnitType::kModel).at(0);
-  std::size_t end = model.end();
+  const auto rig = units_of_type(good, UnitType::kRig).at(0);
+  std::size_t end = rig.end();
   for (const UnitPlace& unit : units) {
     if (unit.offset == end && unit.type == UnitType::kSlice) end = unit.end();
   }
-  StreamBytes joined(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(model.offset));
+  StreamBytes joined(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(rig.offset));
   joined.insert(joined.end(), good.begin() + static_cast<std::ptrdiff_t>(end), good.end());
   auto decoder = Decoder::open(memory_source(joined));
   ASSERT_TRUE(decoder);
@@ -157,24 +157,24 @@ TEST(ModelSeeking, GoesOnAfterALostModel) {
   }
 }
 
-// The models of a stream as a decoder holds them.
-TEST(StreamModels, KeepsThoseAliveAtTheGof) {
-  for (const StreamBytes& stream : {model_stream(), indexed_model_stream()}) {
+// The rigs of a stream as a decoder holds them.
+TEST(StreamRigs, KeepsThoseAliveAtTheGof) {
+  for (const StreamBytes& stream : {rig_stream(), indexed_rig_stream()}) {
     StreamReader reader(memory_source(stream), {});
     ASSERT_TRUE(reader.open());
-    std::vector<std::weak_ptr<const SkinnedModel>> seen;
+    std::vector<std::weak_ptr<const SharedRig>> seen;
     std::vector<std::size_t> alive;
     const auto gofs = units_of_type(stream, UnitType::kGof);
     for (const UnitPlace& gof : gofs) {
       const auto unit = reader.find_gof();
       ASSERT_TRUE(unit && *unit);
       ASSERT_TRUE(reader.read(**unit));
-      const auto slots = reader.models().at(gof.offset);
+      const auto slots = reader.rigs().at(gof.offset);
       ASSERT_TRUE(slots);
-      for (const auto& model : slots->of_idx) {
+      for (const auto& rig : slots->of_idx) {
         const bool known = std::any_of(seen.begin(), seen.end(),
-                                       [&](const auto& w) { return w.lock() == model; });
-        if (model && !known) seen.emplace_back(model);
+                                       [&](const auto& w) { return w.lock() == rig; });
+        if (rig && !known) seen.emplace_back(rig);
       }
       alive.push_back(
           static_cast<std::size_t>(std::count_if(slots->of_idx.begin(), slots->of_idx.end(),
@@ -186,31 +186,31 @@ TEST(StreamModels, KeepsThoseAliveAtTheGof) {
     EXPECT_FALSE(seen[1].expired());
     EXPECT_FALSE(seen[2].expired());
     // Backwards, those that come later go.
-    ASSERT_TRUE(reader.models().at(gofs[0].offset));
+    ASSERT_TRUE(reader.rigs().at(gofs[0].offset));
     EXPECT_TRUE(seen[1].expired());
     EXPECT_TRUE(seen[2].expired());
   }
 }
 
-TEST(ModelRecons, AreSharedAndDropped) {
-  const StreamBytes stream = model_stream();
+TEST(RigRecons, AreSharedAndDropped) {
+  const StreamBytes stream = rig_stream();
   StreamReader reader(memory_source(stream), {});
   ASSERT_TRUE(reader.open());
-  ModelRecons recons(reader.context());
-  std::vector<const ModelRecon*> used;
-  std::vector<std::weak_ptr<const ModelRecon>> made;
+  RigRecons recons(reader.context());
+  std::vector<const RigRecon*> used;
+  std::vector<std::weak_ptr<const RigRecon>> made;
   for (;;) {
     const auto access_unit = reader.next();
     ASSERT_TRUE(access_unit);
     if (!*access_unit) break;
     const auto* gof = std::get_if<SkinnedGof>(&(*access_unit)->gof);
-    if (gof == nullptr || !gof->model) continue;
-    const auto recon = recons.of(gof->model);
-    EXPECT_EQ(recons.of(gof->model), recon);
+    if (gof == nullptr || !gof->rig) continue;
+    const auto recon = recons.of(gof->rig);
+    EXPECT_EQ(recons.of(gof->rig), recon);
     used.push_back(recon.get());
     made.emplace_back(recon);
   }
-  // GOFs 0, 2 and 4 of the first model, 1 of the second, 6 and 7 of the third.
+  // GOFs 0, 2 and 4 of the first rig, 1 of the second, 6 and 7 of the third.
   ASSERT_EQ(made.size(), 6U);
   EXPECT_EQ(used[0], used[2]);
   EXPECT_EQ(used[0], used[3]);
@@ -238,20 +238,20 @@ std::size_t peak_of_decoding(const StreamBytes& stream, bool backwards) {
   return memory_count.peak - before;
 }
 
-// Models that are replaced again and again.
-TEST(ModelMemory, DoesNotGrowWithTheNumberOfModels) {
+// Rigs that are replaced again and again.
+TEST(RigMemory, DoesNotGrowWithTheNumberOfRigs) {
   for (const bool backwards : {false, true}) {
-    const std::size_t few = peak_of_decoding(ModelAnimation().many_models(10), backwards);
-    const std::size_t many = peak_of_decoding(ModelAnimation().many_models(60), backwards);
-    // Of each GOF and of each model, a few numbers are kept.
+    const std::size_t few = peak_of_decoding(RigAnimation().many_rigs(10), backwards);
+    const std::size_t many = peak_of_decoding(RigAnimation().many_rigs(60), backwards);
+    // Of each GOF and of each rig, a few numbers are kept.
     EXPECT_LT(many, few + 50 * 500) << backwards;
     EXPECT_GT(few, 50000U);
   }
 }
 
 // Each allocation fails in turn, then samples; what could be decoded before is right.
-TEST(ModelMemory, FailedAllocationsEndDecoding) {
-  const StreamBytes stream = indexed_model_stream();
+TEST(RigMemory, FailedAllocationsEndDecoding) {
+  const StreamBytes stream = indexed_rig_stream();
   const std::vector<Frame> expected = decode_all(stream);
   for (const std::uint32_t threads : {1U, 3U}) {
     int ended = 0;
@@ -279,17 +279,17 @@ TEST(ModelMemory, FailedAllocationsEndDecoding) {
   }
 }
 
-// A stream can have any number of models before a GOF.
-TEST(ModelMemory, ManyModelsBeforeAGofDecode) {
-  const StreamBytes one = model_stream();
+// A stream can have any number of rigs before a GOF.
+TEST(RigMemory, ManyRigsBeforeAGofDecode) {
+  const StreamBytes one = rig_stream();
   const std::vector<Frame> expected = decode_all(one);
   const auto units = units_of(one);
-  const UnitPlace model = units_of_type(one, UnitType::kModel).at(0);
-  const Bytes unit(one.begin() + static_cast<std::ptrdiff_t>(model.offset),
-                   one.begin() + static_cast<std::ptrdiff_t>(model.end()));
-  StreamBytes many(one.begin(), one.begin() + static_cast<std::ptrdiff_t>(model.offset));
+  const UnitPlace rig = units_of_type(one, UnitType::kRig).at(0);
+  const Bytes unit(one.begin() + static_cast<std::ptrdiff_t>(rig.offset),
+                   one.begin() + static_cast<std::ptrdiff_t>(rig.end()));
+  StreamBytes many(one.begin(), one.begin() + static_cast<std::ptrdiff_t>(rig.offset));
   for (int i = 0; i < 20000; ++i) many.insert(many.end(), unit.begin(), unit.end());
-  many.insert(many.end(), one.begin() + static_cast<std::ptrdiff_t>(model.offset), one.end());
+  many.insert(many.end(), one.begin() + static_cast<std::ptrdiff_t>(rig.offset), one.end());
   for (const std::uint32_t threads : {1U, 4U}) {
     EXPECT_EQ(decode_all(many, with_threads(threads)), expected);
     auto decoder = Decoder::open(memory_source(many), with_threads(threads));

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/testing/model_animation.h"
+#include "conformance/testing/rig_animation.h"
 #include "conformance/testing/small_animation.h"
 #include "decoder/rlpc_decoder.h"
 
@@ -307,10 +307,10 @@ TEST_P(RandomAccess, KeptGofsGiveWayToTheLimit) {
 }
 
 std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
-  return std::array{"Main", "Models", "Chained", "Dyadic", "Independent"}[stream.index];
+  return std::array{"Main", "Rigs", "Chained", "Dyadic", "Independent"}[stream.index];
 }
 INSTANTIATE_TEST_SUITE_P(Streams, RandomAccess,
-                         testing::Values(main_stream, model_stream, chained_stream,
+                         testing::Values(main_stream, rig_stream, chained_stream,
                                          dyadic_stream, independent_stream),
                          stream_name);
 INSTANTIATE_TEST_SUITE_P(Streams, AttributesOfStreams,

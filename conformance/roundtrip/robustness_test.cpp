@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/testing/model_animation.h"
+#include "conformance/testing/rig_animation.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
@@ -201,19 +201,19 @@ TEST_P(Robustness, UnitsLeftOutOrRepeatedEnd) {
     ASSERT_NO_FATAL_FAILURE(expect_an_end(without));
     ASSERT_NO_FATAL_FAILURE(expect_an_end(twice));
     // A stream needs neither a vertex order nor ancillary units, and may repeat the latter;
-    // a skinned model may replace one without slices.
+    // a shared rig may replace one without slices.
     const bool ancillary = (stream_[unit.offset] & kAncillaryFlag) != 0;
     const bool optional = ancillary || unit.type == UnitType::kVertexOrder;
     EXPECT_TRUE(optional || decode(without).error);
-    EXPECT_TRUE(ancillary || unit.type == UnitType::kModel || decode(twice).error);
+    EXPECT_TRUE(ancillary || unit.type == UnitType::kRig || decode(twice).error);
   }
 }
 
 std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
-  return std::array{"Rich", "Indexed", "Models"}.at(stream.index);
+  return std::array{"Rich", "Indexed", "Rigs"}.at(stream.index);
 }
 INSTANTIATE_TEST_SUITE_P(Streams, Robustness,
-                         testing::Values(rich_stream, indexed_stream, indexed_model_stream),
+                         testing::Values(rich_stream, indexed_stream, indexed_rig_stream),
                          stream_name);
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Writer and parser of skinned models, and of GOFs that use them, against each other (6.13);
+// Writer and parser of shared rigs, and of GOFs that use them, against each other (6.13);
 // and their reconstruction against that of one GOF with the same contents (8.16).
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/codec/bits/bit_reader.h"
-#include "common/codec/kinds/skinned/recon/model_recon.h"
+#include "common/codec/kinds/skinned/recon/rig_recon.h"
 #include "common/codec/kinds/skinned/recon/skinned_recon.h"
 #include "common/testing/split_skinned_gof.h"
 #include "decoder/codec/parse/parse_gof_header.h"
@@ -23,18 +23,18 @@ namespace {
 constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
 using Payload = std::vector<std::uint8_t>;
 
-// A decoder's side of a model or of a GOF that uses it.
+// A decoder's side of a rig or of a GOF that uses it.
 class Reading {
  public:
-  explicit Reading(const SplitSkinnedGof& from, const ModelSlots& models = {})
+  explicit Reading(const SplitSkinnedGof& from, const RigSlots& rigs = {})
       : from_(from),
-        models_(models),
+        rigs_(rigs),
         meshes_(from.whole.topology, from.whole.triangles),
         parser_(from.whole.header, meshes_, {kMemory, 0}) {}
 
-  std::optional<Error> model(const Payload& payload) {
+  std::optional<Error> rig(const Payload& payload) {
     BitReader r(payload);
-    return error_of(parser_.model(r, models_));
+    return error_of(parser_.rig(r, rigs_));
   }
   std::optional<Error> tracks(const Payload& payload) {
     BitReader r(payload);
@@ -42,15 +42,15 @@ class Reading {
         parse_gof_header(r, from_.whole.header, from_.whole.gof.first_frame);
     if (r.error()) return *r.error();
     if (header.kind != GofKind::kSharedRig) return Error{Errc::kInvalid, "", "gof_kind", 0};
-    return error_of(parser_.tracks(r, header, models_));
+    return error_of(parser_.tracks(r, header, rigs_));
   }
   std::optional<Error> slice(const Payload& payload) {
     BitReader r(payload);
     return error_of(parser_.slice(r, 0));
   }
   // A unit and its slices, up to the first error.
-  std::optional<Error> all(const SkinnedGofPayloads& payloads, bool is_model) {
-    auto error = is_model ? model(payloads.first) : tracks(payloads.first);
+  std::optional<Error> all(const SkinnedGofPayloads& payloads, bool is_rig) {
+    auto error = is_rig ? rig(payloads.first) : tracks(payloads.first);
     for (std::size_t i = 0; i < payloads.slices.size() && !error; ++i) {
       error = slice(payloads.slices[i]);
     }
@@ -66,7 +66,7 @@ class Reading {
   }
 
   const SplitSkinnedGof& from_;
-  ModelSlots models_;
+  RigSlots rigs_;
   OrderedMeshes meshes_;
   SkinnedGofParser parser_;
 };
@@ -75,27 +75,27 @@ std::string text_of(const std::optional<Error>& error) {
   return error ? std::string(error->rule) + " " + error->element : "no error";
 }
 
-SkinnedGofPayloads payloads_of_model(const SplitSkinnedGof& from) {
-  return write_skinned_model(*from.model, from.model_idx, from.whole.coded_mesh(),
+SkinnedGofPayloads payloads_of_rig(const SplitSkinnedGof& from) {
+  return write_shared_rig(*from.rig, from.rig_idx, from.whole.coded_mesh(),
                              from.whole.header);
 }
 SkinnedGofPayloads payloads_of_tracks(const SplitSkinnedGof& from) {
   return write_tracks(from.tracks, from.whole.coded_mesh(), from.whole.header);
 }
-ModelSlots slots_with(const SplitSkinnedGof& from) {
-  ModelSlots models;
-  models.of_idx[from.model_idx] = from.model;
-  return models;
+RigSlots slots_with(const SplitSkinnedGof& from) {
+  RigSlots rigs;
+  rigs.of_idx[from.rig_idx] = from.rig;
+  return rigs;
 }
 
 void expect_round_trip(const SplitSkinnedGof& from) {
-  Reading model(from);
-  auto error = model.all(payloads_of_model(from), true);
+  Reading rig(from);
+  auto error = rig.all(payloads_of_rig(from), true);
   ASSERT_FALSE(error) << text_of(error);
-  EXPECT_EQ(model.parser().model_idx(), from.model_idx);
-  SkinnedModel parsed = *model.parser().finish_model();
-  parsed.influences = complete_influences(model.meshes()[parsed.prediction], parsed);
-  EXPECT_TRUE(*from.model == parsed);
+  EXPECT_EQ(rig.parser().rig_idx(), from.rig_idx);
+  SharedRig parsed = *rig.parser().finish_rig();
+  parsed.influences = complete_influences(rig.meshes()[parsed.prediction], parsed);
+  EXPECT_TRUE(*from.rig == parsed);
 
   Reading gof(from, slots_with(from));
   error = gof.all(payloads_of_tracks(from), false);
@@ -104,7 +104,7 @@ void expect_round_trip(const SplitSkinnedGof& from) {
   EXPECT_TRUE(from.tracks == tracks);
 }
 
-TEST(SkinnedModelRoundTrip, RandomLegalModelsAndGofsComeBack) {
+TEST(SharedRigRoundTrip, RandomLegalRigsAndGofsComeBack) {
   int with_local_groups = 0;
   int still = 0;
   for (unsigned seed = 1; seed <= 1500; ++seed) {
@@ -119,7 +119,7 @@ TEST(SkinnedModelRoundTrip, RandomLegalModelsAndGofsComeBack) {
   EXPECT_GT(still, 200);
 }
 
-TEST(SkinnedModelRoundTrip, TheSmallestAndManyGroupsComeBack) {
+TEST(SharedRigRoundTrip, TheSmallestAndManyGroupsComeBack) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
     expect_round_trip(
@@ -134,7 +134,7 @@ TEST(SkinnedModelRoundTrip, TheSmallestAndManyGroupsComeBack) {
 }
 
 // A few prefixes of a payload happen to be payloads themselves.
-TEST(SkinnedModelParser, ProperPrefixesFailOrParse) {
+TEST(SharedRigParser, ProperPrefixesFailOrParse) {
   int refused = 0;
   int parsed = 0;
   for (unsigned seed = 1; seed <= 120; ++seed) {
@@ -144,9 +144,9 @@ TEST(SkinnedModelParser, ProperPrefixesFailOrParse) {
                                       .max_bones = 3,
                                       .max_groups = 3,
                                       .max_components = 2});
-    for (const bool is_model : {true, false}) {
+    for (const bool is_rig : {true, false}) {
       const SkinnedGofPayloads whole =
-          is_model ? payloads_of_model(from) : payloads_of_tracks(from);
+          is_rig ? payloads_of_rig(from) : payloads_of_tracks(from);
       for (std::size_t i = 0; i <= whole.slices.size(); ++i) {
         SkinnedGofPayloads cut = whole;
         cut.slices.resize(i);
@@ -154,11 +154,11 @@ TEST(SkinnedModelParser, ProperPrefixesFailOrParse) {
         const Payload all = last;
         for (std::size_t n = 0; n < all.size(); ++n) {
           last = Payload(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n));
-          ++(Reading(from, slots_with(from)).all(cut, is_model) ? refused : parsed);
+          ++(Reading(from, slots_with(from)).all(cut, is_rig) ? refused : parsed);
         }
         last = all;
         last.push_back(0);
-        EXPECT_TRUE(Reading(from, slots_with(from)).all(cut, is_model));
+        EXPECT_TRUE(Reading(from, slots_with(from)).all(cut, is_rig));
       }
     }
   }
@@ -166,8 +166,8 @@ TEST(SkinnedModelParser, ProperPrefixesFailOrParse) {
   EXPECT_LT(parsed, refused / 50);
 }
 
-// 7.13.2: tracks stand for the slices of the model.
-TEST(SkinnedModelParser, RefusesSlicesInAnotherOrderOrTwice) {
+// 7.13.2: tracks stand for the slices of the rig.
+TEST(SharedRigParser, RefusesSlicesInAnotherOrderOrTwice) {
   int tried = 0;
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
@@ -190,10 +190,10 @@ TEST(SkinnedModelParser, RefusesSlicesInAnotherOrderOrTwice) {
   EXPECT_GT(tried, 200);
 }
 
-TEST(SkinnedModelParser, RefusesTracksWithoutTheirModel) {
+TEST(SharedRigParser, RefusesTracksWithoutTheirRig) {
   const SplitSkinnedGof from(1, {});
   const auto error = Reading(from).tracks(payloads_of_tracks(from).first);
-  EXPECT_EQ(text_of(error), "R-MOD-01 model_idx");
+  EXPECT_EQ(text_of(error), "R-MOD-01 rig_idx");
   EXPECT_EQ(error->code, Errc::kUnsupported);
 }
 
@@ -203,37 +203,37 @@ std::vector<std::int32_t> frames_of(const SkinnedRecon& recon, std::size_t num_v
   return positions;
 }
 
-TEST(SkinnedModelRecon, GivesTheFramesOfOneGof) {
+TEST(SharedRigRecon, GivesTheFramesOfOneGof) {
   int adaptive = 0;
   for (unsigned seed = 1; seed <= 1500; ++seed) {
     SCOPED_TRACE(seed);
     const SplitSkinnedGof from(seed, {});
     const OrderedMesh mesh = from.whole.coded_mesh();
     const int bits = from.whole.header.position_bits;
-    const auto model = std::make_shared<ModelRecon>(mesh, *from.model, bits, true);
+    const auto rig = std::make_shared<RigRecon>(mesh, *from.rig, bits, true);
     const SkinnedRecon whole(mesh, from.whole.gof, bits);
-    const SkinnedRecon tracks(model, from.tracks);
+    const SkinnedRecon tracks(rig, from.tracks);
     ASSERT_EQ(frames_of(tracks, mesh.num_vertices()), frames_of(whole, mesh.num_vertices()));
     adaptive +=
         from.whole.gof.weights.num_adaptive_factors > 0 && from.tracks.group_end.size() > 1 ? 1
                                                                                             : 0;
   }
-  EXPECT_GT(adaptive, 20);  // whose weights go on from those of the model
+  EXPECT_GT(adaptive, 20);  // whose weights go on from those of the rig
 }
 
-// The model is only read: its GOFs do not depend on each other or on their order.
-TEST(SkinnedModelRecon, ServesSeveralGofs) {
+// The rig is only read: its GOFs do not depend on each other or on their order.
+TEST(SharedRigRecon, ServesSeveralGofs) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
     const SplitSkinnedGof from(seed, {});
     const OrderedMesh mesh = from.whole.coded_mesh();
-    const auto model =
-        std::make_shared<ModelRecon>(mesh, *from.model, from.whole.header.position_bits, true);
+    const auto rig =
+        std::make_shared<RigRecon>(mesh, *from.rig, from.whole.header.position_bits, true);
     SkinnedGof other = from.tracks;
     for (Trajectory& t : other.trajectories) t.residual.assign(other.num_frames, {3, -2, 1});
-    const auto before = frames_of(SkinnedRecon(model, from.tracks), mesh.num_vertices());
-    (void)frames_of(SkinnedRecon(model, other), mesh.num_vertices());
-    EXPECT_EQ(frames_of(SkinnedRecon(model, from.tracks), mesh.num_vertices()), before);
+    const auto before = frames_of(SkinnedRecon(rig, from.tracks), mesh.num_vertices());
+    (void)frames_of(SkinnedRecon(rig, other), mesh.num_vertices());
+    EXPECT_EQ(frames_of(SkinnedRecon(rig, from.tracks), mesh.num_vertices()), before);
   }
 }
 

@@ -1,4 +1,4 @@
-// Sequences of several spans, of which later ones use skinned models of earlier ones.
+// Sequences of several spans, of which later ones use shared rigs of earlier ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -104,29 +104,29 @@ Frames decode(const StreamBytes& bytes) {
   return frames;
 }
 
-TEST(SpanModels, RepeatedMotionHasOneModel) {
+TEST(SpanRigs, RepeatedMotionHasOneRig) {
   MemoryFrames source = moving_tube(192, bent);
   MemoryFrames first = moving_tube(64, bent);
   const StreamBytes whole = stream_of(source, settings_of(32), 64);
-  EXPECT_EQ(count(whole, UnitType::kModel), 1U);
+  EXPECT_EQ(count(whole, UnitType::kRig), 1U);
   EXPECT_EQ(count(whole, UnitType::kGof), 6U);
-  // Much less than a model for each span.
+  // Much less than a rig for each span.
   EXPECT_LT(whole.size(),
             2.2 * static_cast<double>(stream_of(first, settings_of(32), 64).size()));
   EXPECT_EQ(decode(whole).size(), 192U);
 }
 
-// A span of a single GOF has vertices of its own where nothing follows, but a model otherwise.
-TEST(SpanModels, SpansMayBeSingleGofs) {
+// A span of a single GOF has vertices of its own where nothing follows, but a rig otherwise.
+TEST(SpanRigs, SpansMayBeSingleGofs) {
   MemoryFrames source = moving_tube(96, bent);
   const StreamBytes bytes = stream_of(source, settings_of(32), 32);
-  EXPECT_EQ(count(bytes, UnitType::kModel), 1U);
+  EXPECT_EQ(count(bytes, UnitType::kRig), 1U);
   EXPECT_EQ(count(bytes, UnitType::kGof), 3U);
   EXPECT_EQ(decode(bytes).size(), 96U);
 }
 
 // Little more than if the parts were sequences of their own.
-TEST(SpanModels, ChangedMotionIsCodedAsWell) {
+TEST(SpanRigs, ChangedMotionIsCodedAsWell) {
   MemoryFrames source = moving_tube(128, changing(64.0));
   MemoryFrames first = moving_tube(64, bent);
   const StreamBytes whole = stream_of(source, settings_of(64), 64);
@@ -139,12 +139,12 @@ TEST(SpanModels, ChangedMotionIsCodedAsWell) {
   EXPECT_EQ(decode(whole).size(), 128U);
 }
 
-TEST(SpanModels, SeeksReachLaterSpans) {
+TEST(SpanRigs, SeeksReachLaterSpans) {
   MemoryFrames source = moving_tube(128, changing(96.0));
   // Enough GOFs for an index.
   const StreamBytes bytes = stream_of(source, settings_of(4), 32);
   EXPECT_GE(count(bytes, UnitType::kGofIndex), 1U);
-  EXPECT_LT(count(bytes, UnitType::kModel), 4U);
+  EXPECT_LT(count(bytes, UnitType::kRig), 4U);
   const Frames frames = decode(bytes);
   std::vector<std::int32_t> positions(frames[0].size());
   for (const std::uint32_t f : {127U, 40U, 65U, 3U, 100U, 31U, 32U}) {
@@ -156,13 +156,13 @@ TEST(SpanModels, SeeksReachLaterSpans) {
   }
 }
 
-TEST(SpanModels, ThreadsGiveTheSameBytes) {
+TEST(SpanRigs, ThreadsGiveTheSameBytes) {
   MemoryFrames source = moving_tube(96, changing(50.0));
   EXPECT_EQ(stream_of(source, settings_of(16, 1), 32),
             stream_of(source, settings_of(16, 2), 32));
 }
 
-TEST(SpanModels, MeetOtherTargets) {
+TEST(SpanRigs, MeetOtherTargets) {
   MemoryFrames source = moving_tube(96, changing(70.0));
   for (const Target& target : {Target{Target::kMaxError, 0.01}, Target{Target::kBpvf, 2.0}}) {
     EncoderSettings settings = settings_of(32);
@@ -182,13 +182,13 @@ class LittleMemory : public testing::Test {
   MemoryFrames source_ = moving_tube(600, changing(500.0));
 };
 
-TEST_F(LittleMemory, LaterSpansUseTheModel) {
+TEST_F(LittleMemory, LaterSpansUseTheRig) {
   EncodeReport report;
   const StreamBytes bytes = encode_to_memory(source_, settings(1), &report);
   ASSERT_FALSE(bytes.empty());
   EXPECT_TRUE(report.target_met);
   EXPECT_LE(report.metrics.kg_error_percent, 0.3);
-  EXPECT_EQ(count(bytes, UnitType::kModel), 1U);
+  EXPECT_EQ(count(bytes, UnitType::kRig), 1U);
   EXPECT_GT(count(bytes, UnitType::kGof), 2U);
   EXPECT_EQ(decode(bytes).size(), 600U);
   EXPECT_EQ(bytes, encode_to_memory(source_, settings(2)));

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "conformance/testing/cut_streams.h"
-#include "conformance/testing/model_animation.h"
+#include "conformance/testing/rig_animation.h"
 
 namespace rlpc {
 namespace {
@@ -101,7 +101,7 @@ TEST(SubStreamExtractor, KeepsClusterGofsWhole) {
 
 TEST(SubStreamExtractor, WritesConformingStreamsThatDecodeAsIfCut) {
   for (const StreamBytes& stream : {sliced_stream(), ordered_stream(), mixed_stream(),
-                                    model_stream(), indexed_model_stream()}) {
+                                    rig_stream(), indexed_rig_stream()}) {
     for (const SliceCut& cut : some_cuts()) {
       SCOPED_TRACE(testing::Message() << cut.max_components << ", " << cut.max_layers);
       const StreamBytes out = cut_stream(stream, cut);
@@ -152,7 +152,7 @@ TEST(SubStreamExtractor, KeepsTheKindOfHashes) {
 
 TEST(SubStreamExtractor, CopiesAStreamThatHasNoMore) {
   for (const StreamBytes& stream :
-       {sliced_stream(), ordered_stream(), mixed_stream(), rich_stream(), model_stream()}) {
+       {sliced_stream(), ordered_stream(), mixed_stream(), rich_stream(), rig_stream()}) {
     EXPECT_EQ(cut_stream(stream, {6, 100}), stream);
   }
 }
@@ -173,7 +173,7 @@ TEST(SubStreamExtractor, RefusesDamagedStreams) {
 
 TEST(CutDecoding, SeeksToTheFramesOfDecodingInOrder) {
   for (const StreamBytes& stream : {sliced_stream(), ordered_stream(), mixed_stream(),
-                                    model_stream(), indexed_model_stream()}) {
+                                    rig_stream(), indexed_rig_stream()}) {
     for (const SliceCut& cut : some_cuts()) {
       const StreamBytes out = cut_stream(stream, cut);
       const std::vector<Frame> expected = decode_all(out);

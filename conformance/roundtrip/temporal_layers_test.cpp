@@ -96,9 +96,9 @@ TEST(TemporalLayers, CutsAreAsReported) {
   }
 }
 
-TEST(TemporalLayers, CutsOfGofsThatShareAModelAreAsReported) {
+TEST(TemporalLayers, CutsOfGofsThatShareARigAreAsReported) {
   const Encoded whole = encoded(settings_with(2, 15));
-  EXPECT_FALSE(summary_of(whole.bytes).models.empty());
+  EXPECT_FALSE(summary_of(whole.bytes).rigs.empty());
   expect_reported_cuts(whole, 2);
 }
 

@@ -277,8 +277,8 @@ class Access(unittest.TestCase):
         self.data = path.read_bytes()
         v = self.decoder()
         self.assertEqual(v["LocateGofs"](), 1)
-        self.index = {name: v[name] for name in ("IndexOffset", "IndexFrame", "ModelIndexOffset",
-                                                 "ModelIndexIdx")}
+        self.index = {name: v[name] for name in ("IndexOffset", "IndexFrame", "RigIndexOffset",
+                                                 "RigIndexIdx")}
         self.gofs = range(len(v["IndexOffset"]))
 
     def decoder(self):
@@ -296,7 +296,7 @@ class Access(unittest.TestCase):
         self.output.seek(0)
         self.output.truncate()
         v.update(self.index)
-        v["DecodeModels"](v["IndexOffset"][gof])
+        v["DecodeRigs"](v["IndexOffset"][gof])
         v.update(BitPosition=8 * v["IndexOffset"][gof], NumParsedFrames=v["IndexFrame"][gof],
                  NumOutputFrames=0)
         v["unit_header"]()
@@ -322,14 +322,14 @@ class RandomAccess(Access):
         self.open(HIGH / "MDL" / "MDL-0012a.rlpc")
         v = self.decoder()
         v.update(self.index)
-        offsets, found = self.index["ModelIndexOffset"], []
+        offsets, found = self.index["RigIndexOffset"], []
         model = v["model"]
         v["model"] = lambda: (found.append(v["UnitStart"]), model())
         for gof in self.gofs:
             found.clear()
             end = self.index["IndexOffset"][gof]
-            v["DecodeModels"](end)
-            latest = {self.index["ModelIndexIdx"][m]: o for m, o in enumerate(offsets) if o < end}
+            v["DecodeRigs"](end)
+            latest = {self.index["RigIndexIdx"][m]: o for m, o in enumerate(offsets) if o < end}
             self.assertEqual(found, sorted(latest.values()))
             self.assertEqual([m for m, kept in enumerate(v["Models"]) if kept], sorted(latest))
         self.assertGreater(len(offsets), len(found))  # one is replaced
@@ -410,7 +410,7 @@ class AbortedTracks(Aborted):
     """The same with skinned models."""
 
     STREAM = HIGH / "MDL" / "MDL-0012a.rlpc"
-    FUNCTIONS = (*Aborted.FUNCTIONS, "StartVertices", "LoadModel", "StartTracks")
+    FUNCTIONS = (*Aborted.FUNCTIONS, "StartVertices", "LoadRig", "StartTracks")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-// Small streams of the High profile with all syntax of skinned models, likewise.
+// Small streams of the High profile with all syntax of shared rigs, likewise.
 #pragma once
 
 #include <array>
@@ -7,62 +7,62 @@
 #include <utility>
 #include <vector>
 
-#include "common/codec/kinds/skinned/recon/model_recon.h"
+#include "common/codec/kinds/skinned/recon/rig_recon.h"
 #include "conformance/testing/sliced_animation.h"
 
 namespace rlpc {
 
-class ModelAnimation : protected SlicedAnimation {
+class RigAnimation : protected SlicedAnimation {
  public:
-  ModelAnimation() { header_.profile_idc = kProfileHigh; }
+  RigAnimation() { header_.profile_idc = kProfileHigh; }
 
-  // Skinned models with and without vertex layers, one of them not complete, one that is
-  // replaced; GOFs that use all of a model, add local component groups to it, or use a part;
+  // Shared rigs with and without vertex layers, one of them not complete, one that is
+  // replaced; GOFs that use all of a rig, add local component groups to it, or use a part;
   // GOFs of the other kinds; two frames each.
   StreamBytes stream(bool with_index) {
     out_ = lead(8);
-    add_model(0, make_model(Prediction::kLayers, kGroups));
+    add_rig(0, make_rig(Prediction::kLayers, kGroups));
     add_tracks(0, kGroups, 2);
-    add_model(5, make_model(Prediction::kParallelogram, 1));
+    add_rig(5, make_rig(Prediction::kParallelogram, 1));
     add_tracks(5, 1, 0);
     add_tracks(0, kGroups, 0);
     add_gof(clusters(first_frame()));
     add_tracks(0, 1, 0);
     add_gof(gof(first_frame(), Prediction::kLayers));
-    add_model(0, make_model(Prediction::kNone, kGroups));
+    add_rig(0, make_rig(Prediction::kNone, kGroups));
     add_tracks(0, 0, 0);
     add_tracks(0, kGroups, 1);
     return finish(with_index);
   }
-  // A model that no GOF uses before it is replaced; and one with a bone that moves no vertex,
+  // A rig that no GOF uses before it is replaced; and one with a bone that moves no vertex,
   // and a trajectory that no GOF has.
   StreamBytes idle_stream() {
     out_ = lead(1);
-    add_model(7, make_model(Prediction::kNone, kGroups));
-    SkinnedModel model = make_model(Prediction::kLayers, kGroups);
-    model.bones.push_back(bone(3));
-    strip(model.bones.back());
-    add_model(7, model);
+    add_rig(7, make_rig(Prediction::kNone, kGroups));
+    SharedRig rig = make_rig(Prediction::kLayers, kGroups);
+    rig.bones.push_back(bone(3));
+    strip(rig.bones.back());
+    add_rig(7, rig);
     SkinnedGof gof = make_tracks(7, kGroups, 0);
     gof.trajectories.back() = {};
     gof.trajectories.back().trajectory_flag = false;
     add_gof(gof);
     return finish(false);
   }
-  // A model for each GOF, under indices in turn.
-  StreamBytes many_models(std::uint32_t count) {
+  // A rig for each GOF, under indices in turn.
+  StreamBytes many_rigs(std::uint32_t count) {
     out_ = lead(count);
     for (std::uint32_t g = 0; g < count; ++g) {
-      add_model(g % kMaxModels, make_model(Prediction::kLayers, kGroups));
-      add_tracks(g % kMaxModels, kGroups, 0);
+      add_rig(g % kMaxRigs, make_rig(Prediction::kLayers, kGroups));
+      add_tracks(g % kMaxRigs, kGroups, 0);
     }
     return finish(true);
   }
 
  private:
   struct Kept {
-    std::shared_ptr<const SkinnedModel> model;
-    std::shared_ptr<const ModelRecon> recon;
+    std::shared_ptr<const SharedRig> rig;
+    std::shared_ptr<const RigRecon> recon;
   };
 
   std::uint32_t first_frame() const {
@@ -79,34 +79,34 @@ class ModelAnimation : protected SlicedAnimation {
   }
 
   // num_groups: of its component groups, those that have slices.
-  SkinnedModel make_model(Prediction prediction, std::uint32_t num_groups) {
-    SkinnedModel model = gof(0, prediction);
-    for (Bone& bone : model.bones) strip(bone);
-    if (prediction == Prediction::kLayers) model.weights.num_adaptive_factors = 4;
-    model.group_end.resize(num_groups + 1);
-    model.vertex_residual.resize(num_groups + 1);
-    model.trajectories.resize(model.group_end.back() - kRestFactors);
+  SharedRig make_rig(Prediction prediction, std::uint32_t num_groups) {
+    SharedRig rig = gof(0, prediction);
+    for (Bone& bone : rig.bones) strip(bone);
+    if (prediction == Prediction::kLayers) rig.weights.num_adaptive_factors = 4;
+    rig.group_end.resize(num_groups + 1);
+    rig.vertex_residual.resize(num_groups + 1);
+    rig.trajectories.resize(rig.group_end.back() - kRestFactors);
     for (std::size_t group = num_groups + 1; group <= kGroups; ++group) {
-      model.slice_layers[group] = 0;
+      rig.slice_layers[group] = 0;
     }
-    for (Trajectory& t : model.trajectories) {
+    for (Trajectory& t : rig.trajectories) {
       const int spatial_bits = t.spatial_bits;
       t = {};
       t.spatial_bits = spatial_bits;
     }
-    return model;
+    return rig;
   }
-  // num_groups: of the component groups of the model, those that have tracks.
-  SkinnedGof make_tracks(std::uint32_t model_idx, std::uint32_t num_groups,
+  // num_groups: of the component groups of the rig, those that have tracks.
+  SkinnedGof make_tracks(std::uint32_t rig_idx, std::uint32_t num_groups,
                          std::uint32_t num_local_groups) {
-    const auto& model = kept_.at(model_idx).model;
+    const auto& rig = kept_.at(rig_idx).rig;
     SkinnedGof gof;
-    static_cast<SkinnedModel&>(gof) = *model;
+    static_cast<SharedRig&>(gof) = *rig;
     gof.kind = GofKind::kSharedRig;
     gof.first_frame = first_frame();
     gof.num_frames = kGofFrames;
-    gof.model = model;
-    gof.model_idx = model_idx;
+    gof.rig = rig;
+    gof.rig_idx = rig_idx;
     gof.num_local_groups = num_local_groups;
     gof.influences.clear();
     for (Bone& bone : gof.bones) {
@@ -114,17 +114,17 @@ class ModelAnimation : protected SlicedAnimation {
       if (bone.origin_flag) bone.origin_residual = track();
     }
     gof.trajectories.clear();
-    for (std::size_t l = 0; l < model->group_end[num_groups] - kRestFactors; ++l) {
+    for (std::size_t l = 0; l < rig->group_end[num_groups] - kRestFactors; ++l) {
       const bool occurs = l != 1 || index_.gofs.size() % 3 != 2;
       Trajectory next = occurs ? trajectory(3 + l) : Trajectory();
       next.trajectory_flag = occurs;
-      next.spatial_bits = model->trajectories[l].spatial_bits;
+      next.spatial_bits = rig->trajectories[l].spatial_bits;
       gof.trajectories.push_back(next);
     }
     for (std::size_t group = num_groups + 1; group <= gof.num_component_groups; ++group) {
       gof.slice_layers[group] = 0;
     }
-    gof.group_end = {model->group_end.back()};
+    gof.group_end = {rig->group_end.back()};
     gof.vertex_residual = {{}};
     for (std::uint32_t group = 1; group <= num_local_groups; ++group) {
       for (std::uint32_t l = 0; l < group; ++l) gof.trajectories.push_back(trajectory(group));
@@ -135,19 +135,19 @@ class ModelAnimation : protected SlicedAnimation {
     return gof;
   }
 
-  void add_model(std::uint32_t model_idx, const SkinnedModel& model) {
-    index_.models.push_back({model_idx, out_.size()});
-    const OrderedMesh& coded = mesh(model.prediction);
-    const SkinnedGofPayloads payloads = write_skinned_model(model, model_idx, coded, header_);
-    append(out_, UnitType::kModel, payloads.first);
+  void add_rig(std::uint32_t rig_idx, const SharedRig& rig) {
+    index_.rigs.push_back({rig_idx, out_.size()});
+    const OrderedMesh& coded = mesh(rig.prediction);
+    const SkinnedGofPayloads payloads = write_shared_rig(rig, rig_idx, coded, header_);
+    append(out_, UnitType::kRig, payloads.first);
     for (const Bytes& slice : payloads.slices) append(out_, UnitType::kSlice, slice);
-    kept_.at(model_idx) = {
-        std::make_shared<SkinnedModel>(model),
-        std::make_shared<ModelRecon>(coded, model, header_.position_bits, true)};
+    kept_.at(rig_idx) = {
+        std::make_shared<SharedRig>(rig),
+        std::make_shared<RigRecon>(coded, rig, header_.position_bits, true)};
   }
-  void add_tracks(std::uint32_t model_idx, std::uint32_t num_groups,
+  void add_tracks(std::uint32_t rig_idx, std::uint32_t num_groups,
                   std::uint32_t num_local_groups) {
-    add_gof(make_tracks(model_idx, num_groups, num_local_groups));
+    add_gof(make_tracks(rig_idx, num_groups, num_local_groups));
   }
   template <class Gof>
   void add_gof(const Gof& gof) {
@@ -162,11 +162,11 @@ class ModelAnimation : protected SlicedAnimation {
   }
   void append_any(const ClusterGof& gof) { append_gof(out_, gof); }
   void append_any(const SkinnedGof& gof) {
-    if (!gof.model) return append_gof(out_, gof);
+    if (!gof.rig) return append_gof(out_, gof);
     const SkinnedGofPayloads payloads = write_tracks(gof, mesh(gof.prediction), header_);
     append(out_, UnitType::kGof, payloads.first);
     for (const Bytes& slice : payloads.slices) append(out_, UnitType::kSlice, slice);
-    const SkinnedRecon recon(kept_.at(gof.model_idx).recon, gof);
+    const SkinnedRecon recon(kept_.at(gof.rig_idx).recon, gof);
     append(out_, UnitType::kGofHash, write_gof_hash(hashes(recon), true));
   }
   StreamBytes finish(bool with_index) {
@@ -184,10 +184,10 @@ class ModelAnimation : protected SlicedAnimation {
   GofIndexEntries index_;
   std::uint64_t gof_offset_ = 0;
   std::array<std::unique_ptr<OrderedMesh>, 4> meshes_;
-  std::array<Kept, kMaxModels> kept_;
+  std::array<Kept, kMaxRigs> kept_;
 };
 
-inline StreamBytes model_stream() { return ModelAnimation().stream(false); }
-inline StreamBytes indexed_model_stream() { return ModelAnimation().stream(true); }
+inline StreamBytes rig_stream() { return RigAnimation().stream(false); }
+inline StreamBytes indexed_rig_stream() { return RigAnimation().stream(true); }
 
 }  // namespace rlpc

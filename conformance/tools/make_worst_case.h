@@ -19,7 +19,7 @@
 
 namespace rlpc::worst_case {
 
-// A GOF of clusters (Baseline); a GOF of bones (Main); a GOF of tracks with its skinned model
+// A GOF of clusters (Baseline); a GOF of bones (Main); a GOF of tracks with its shared rig
 // (High); a GOF of frames (High).
 enum class Kind : std::uint8_t { kClusters, kBones, kTracks, kFrames };
 
@@ -71,13 +71,13 @@ class Noise {
   std::mt19937 random_{1};
 };
 
-// num_rounds times: skinned models, if the kind has them, and a GOF that uses each; or a GOF.
+// num_rounds times: shared rigs, if the kind has them, and a GOF that uses each; or a GOF.
 struct Plan {
   std::uint32_t level = 1;
   Kind kind = Kind::kClusters;
   Size size;
   std::vector<Triangle> triangles;
-  std::uint32_t num_models = 1;
+  std::uint32_t num_rigs = 1;
   std::uint32_t num_rounds = 1;
 };
 // write: receives the stream piece by piece.
@@ -85,9 +85,9 @@ void write_stream(const Plan& plan, const std::function<void(const Bytes&)>& wri
 
 ClusterGof make_clusters(const Size& size, Noise& noise);
 SkinnedGof make_bones(const Size& size, const OrderedMesh& mesh, Noise& noise);
-SkinnedModel make_model(const Size& size, const OrderedMesh& mesh, Noise& noise);
-// Its member `model` is still null.
-SkinnedGof make_tracks(const Size& size, const SkinnedModel& model, Noise& noise);
+SharedRig make_rig(const Size& size, const OrderedMesh& mesh, Noise& noise);
+// Its member `rig` is still null.
+SkinnedGof make_tracks(const Size& size, const SharedRig& rig, Noise& noise);
 InterSettings make_frames(const Size& size, const OrderedMesh& mesh);
 
 }  // namespace rlpc::worst_case

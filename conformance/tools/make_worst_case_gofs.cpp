@@ -66,32 +66,32 @@ class InfluenceMaker {
   Noise& noise_;
 };
 
-// num_frames: 0 of a skinned model.
-void fill_model(SkinnedModel& model, const Size& size, const OrderedMesh& mesh, Noise& noise,
+// num_frames: 0 of a shared rig.
+void fill_rig(SharedRig& rig, const Size& size, const OrderedMesh& mesh, Noise& noise,
                 std::uint32_t num_frames) {
-  model.fraction_bits = kMaxFractionBits;
-  model.weight_bits = kMaxWeightBits;
-  model.rest_step = 1;
-  model.weights = {5, 8, 8, size.adaptive_factors};
-  model.layer_group_size = {mesh.num_layers()};
-  model.layer_step.assign(mesh.num_layers(), 1);
+  rig.fraction_bits = kMaxFractionBits;
+  rig.weight_bits = kMaxWeightBits;
+  rig.rest_step = 1;
+  rig.weights = {5, 8, 8, size.adaptive_factors};
+  rig.layer_group_size = {mesh.num_layers()};
+  rig.layer_step.assign(mesh.num_layers(), 1);
   for (std::uint32_t b = 0; b < size.bones; ++b) {
-    Bone& bone = model.bones.emplace_back();
+    Bone& bone = rig.bones.emplace_back();
     bone.parent = static_cast<std::int32_t>(b) - 1;
     bone.rotation_flag = bone.origin_flag = true;
     if (num_frames > 0) add_tracks(bone, num_frames, noise);
   }
-  model.influences.resize(size.vertices);
-  InfluenceMaker influences(model.influences, size.bones, noise);
+  rig.influences.resize(size.vertices);
+  InfluenceMaker influences(rig.influences, size.bones, noise);
   for (const std::uint32_t v : mesh.order()) influences.set(v, mesh.ring(v));
   // A single component group, all of whose values are reconstructed together.
-  model.num_component_groups = 1;
-  model.slice_layers = {1, 1};
+  rig.num_component_groups = 1;
+  rig.slice_layers = {1, 1};
   for (std::uint32_t l = 0; l < size.components; ++l)
-    model.trajectories.push_back(make_trajectory(num_frames, noise));
-  model.group_end.push_back(kRestFactors + size.components);
+    rig.trajectories.push_back(make_trajectory(num_frames, noise));
+  rig.group_end.push_back(kRestFactors + size.components);
   for (const std::size_t count : {kRestFactors, std::size_t{size.components}})
-    model.vertex_residual.push_back(noise.residuals(count * size.vertices));
+    rig.vertex_residual.push_back(noise.residuals(count * size.vertices));
 }
 
 }  // namespace
@@ -141,28 +141,28 @@ ClusterGof make_clusters(const Size& size, Noise& noise) {
 SkinnedGof make_bones(const Size& size, const OrderedMesh& mesh, Noise& noise) {
   SkinnedGof gof;
   gof.num_frames = size.frames;
-  fill_model(gof, size, mesh, noise, size.frames);
+  fill_rig(gof, size, mesh, noise, size.frames);
   return gof;
 }
 
-SkinnedModel make_model(const Size& size, const OrderedMesh& mesh, Noise& noise) {
-  SkinnedModel model;
-  fill_model(model, size, mesh, noise, 0);
-  model.rest = {false, true, 8, 8, true, true};
-  model.counterparts.resize(size.vertices);
-  return model;
+SharedRig make_rig(const Size& size, const OrderedMesh& mesh, Noise& noise) {
+  SharedRig rig;
+  fill_rig(rig, size, mesh, noise, 0);
+  rig.rest = {false, true, 8, 8, true, true};
+  rig.counterparts.resize(size.vertices);
+  return rig;
 }
 
-SkinnedGof make_tracks(const Size& size, const SkinnedModel& model, Noise& noise) {
+SkinnedGof make_tracks(const Size& size, const SharedRig& rig, Noise& noise) {
   SkinnedGof gof;
   gof.kind = GofKind::kSharedRig;
   gof.num_frames = size.frames;
   gof.track_levels = kMaxTrackLevels;
-  gof.num_component_groups = model.num_component_groups;
-  gof.layer_group_size = model.layer_group_size;
-  gof.prediction = model.prediction;
-  gof.slice_layers = model.slice_layers;
-  gof.bones = model.bones;
+  gof.num_component_groups = rig.num_component_groups;
+  gof.layer_group_size = rig.layer_group_size;
+  gof.prediction = rig.prediction;
+  gof.slice_layers = rig.slice_layers;
+  gof.bones = rig.bones;
   for (Bone& bone : gof.bones) {
     add_tracks(bone, size.frames, noise);
     bone.rotation_between = bone.origin_between = kMaxBetween;
@@ -171,7 +171,7 @@ SkinnedGof make_tracks(const Size& size, const SkinnedModel& model, Noise& noise
     gof.trajectories.push_back(make_trajectory(size.frames, noise));
     gof.trajectories.back().temporal_between = kMaxBetween;
   }
-  gof.group_end = {model.group_end.back()};
+  gof.group_end = {rig.group_end.back()};
   gof.vertex_residual.emplace_back();
   return gof;
 }

@@ -35,7 +35,7 @@ class StreamMaker {
     header_.level_idc = plan_.level;
     header_.num_vertices = plan_.size.vertices;
     header_.num_triangles = static_cast<std::uint32_t>(plan_.triangles.size());
-    header_.num_frames = plan_.size.frames * plan_.num_models * plan_.num_rounds;
+    header_.num_frames = plan_.size.frames * plan_.num_rigs * plan_.num_rounds;
     header_.position_bits = kMaxPositionBits;
   }
 
@@ -63,24 +63,24 @@ class StreamMaker {
         gof.first_frame = next_frame();
         units(UnitType::kGof, write_skinned_gof(gof, mesh, header_));
       } else if (plan_.kind == Kind::kTracks) {
-        models_and_tracks(mesh);
+        rigs_and_tracks(mesh);
       } else {
         frames(mesh);
       }
     }
   }
 
-  void models_and_tracks(const OrderedMesh& mesh) {
-    std::vector<std::shared_ptr<const SkinnedModel>> models;
-    for (std::uint32_t m = 0; m < plan_.num_models; ++m) {
-      models.push_back(std::make_shared<SkinnedModel>(make_model(plan_.size, mesh, noise_)));
-      units(UnitType::kModel, write_skinned_model(*models[m], m, mesh, header_));
+  void rigs_and_tracks(const OrderedMesh& mesh) {
+    std::vector<std::shared_ptr<const SharedRig>> rigs;
+    for (std::uint32_t m = 0; m < plan_.num_rigs; ++m) {
+      rigs.push_back(std::make_shared<SharedRig>(make_rig(plan_.size, mesh, noise_)));
+      units(UnitType::kRig, write_shared_rig(*rigs[m], m, mesh, header_));
     }
-    for (std::uint32_t m = 0; m < plan_.num_models; ++m) {
-      SkinnedGof gof = make_tracks(plan_.size, *models[m], noise_);
+    for (std::uint32_t m = 0; m < plan_.num_rigs; ++m) {
+      SkinnedGof gof = make_tracks(plan_.size, *rigs[m], noise_);
       gof.first_frame = next_frame();
-      gof.model = models[m];
-      gof.model_idx = m;
+      gof.rig = rigs[m];
+      gof.rig_idx = m;
       units(UnitType::kGof, write_tracks(gof, mesh, header_));
     }
   }

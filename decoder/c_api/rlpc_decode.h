@@ -14,14 +14,14 @@
 //   rlpc_decoder_close(decoder);
 //
 // Frames are decoded one by one, in any order. Memory is bounded by one group of frames (GOF),
-// the skinned models that it could use and one that is being replaced, plus four frames and
+// the shared rigs that it could use and one that is being replaced, plus four frames and
 // max_cached_bytes, whatever the length of the stream, and by max_memory_bytes, whatever the
 // stream claims. No function throws or aborts. A handle may be used by one thread at a time;
 // different handles are independent.
 //
 // Memory: all output goes into the caller's buffers; the handle is the only thing to free, and
 // it can live in the caller's memory as well (place). The decoder allocates when it opens a
-// stream, for each GOF and skinned model, and for the first frame. Within a GOF, every fourth
+// stream, for each GOF and shared rig, and for the first frame. Within a GOF, every fourth
 // frame allocates temporary buffers, the others nothing; more with several threads, or after a
 // seek. It comes from the callbacks of rlpc_decode_options.allocator, or from C++ operator new;
 // whatever the callbacks are, the C and C++ runtimes allocate what they need for files, for
@@ -130,8 +130,8 @@ typedef struct rlpc_memory {
   size_t struct_size;     // as passed to rlpc_decoder_memory
   uint64_t stream_bytes;  // always: connectivity, what follows from it, four frames per thread,
                           // metadata and clips
-  uint64_t gof_bytes;     // of the GOF in use, without skinned models that it shares
-  uint64_t cached_bytes;  // of those kept, with their skinned models
+  uint64_t gof_bytes;     // of the GOF in use, without shared rigs that it shares
+  uint64_t cached_bytes;  // of those kept, with their shared rigs
 } rlpc_memory;
 
 // Where a stream is read from. read: fills `out` with num_bytes bytes from `offset`, always

@@ -29,7 +29,7 @@ struct DecoderOptions {
   Trace* trace = nullptr;     // not owned; receives every syntax element
   // With more than one, GOFs are prefetched, and the vertices of a layer and several frames are
   // reconstructed in parallel; positions and errors are the same. Each further thread may take
-  // memory for two GOFs and the skinned models before them, each up to max_memory_bytes /
+  // memory for two GOFs and the shared rigs before them, each up to max_memory_bytes /
   // threads / 2, and for four frames. Clamped to 1 to kMaxThreads.
   std::uint32_t threads = 1;
   // Decodes as if slices outside the cut were absent, which saves their time: only their CRC

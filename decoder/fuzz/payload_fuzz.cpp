@@ -48,7 +48,7 @@ void gof_index(BitReader& r, std::uint32_t num_frames) {
     fuzz_check(gofs[g].offset >= gofs[g - 1].offset);
   }
   fuzz_check(gofs.back().first_frame < num_frames);
-  fuzz_check(index->models.size() <= num_frames);
+  fuzz_check(index->rigs.size() <= num_frames);
 }
 
 void metadata(BitReader& r, std::uint32_t) {

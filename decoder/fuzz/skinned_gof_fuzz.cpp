@@ -1,8 +1,8 @@
-// Fuzzes the parser and the reconstruction of skinned GOFs, skinned models and their slices,
+// Fuzzes the parser and the reconstruction of skinned GOFs, shared rigs and their slices,
 // without CRCs.
 // Input: first frame, 4 bytes; then pieces, each preceded by its size, 2 bytes: the payloads of
 // sequence header, connectivity, GOF and slices. If the highest bit of the first frame is set,
-// the High profile: GOFs, skinned models and slices in any order, each after a byte with its
+// the High profile: GOFs, shared rigs and slices in any order, each after a byte with its
 // type.
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/codec/kinds/skinned/model_slots.h"
-#include "common/codec/kinds/skinned/recon/model_recon.h"
+#include "common/codec/kinds/skinned/rig_slots.h"
+#include "common/codec/kinds/skinned/recon/rig_recon.h"
 #include "common/codec/kinds/skinned/recon/skinned_recon.h"
 #include "common/codec/syntax/stream_format.h"
 #include "common/testing/fuzz_input.h"
@@ -50,7 +50,7 @@ std::vector<Piece> pieces_of(rlpc::FuzzInput& input) {
   return pieces;
 }
 
-void check_influences(const rlpc::SkinnedModel& gof,
+void check_influences(const rlpc::SharedRig& gof,
                       std::span<const rlpc::Influences> of_vertices) {
   for (const rlpc::Influences& influences : of_vertices) {
     int sum = 0;
@@ -81,38 +81,38 @@ class Units {
     }
     finish();
     open_ = unit.type;
-    if (unit.type == rlpc::UnitType::kModel) {
+    if (unit.type == rlpc::UnitType::kRig) {
       return header_.profile_idc >= rlpc::kProfileHigh &&
-             static_cast<bool>(parser_.model(bits, models_));
+             static_cast<bool>(parser_.rig(bits, rigs_));
     }
     const rlpc::GofHeader gof = rlpc::parse_gof_header(bits, header_, first_frame);
     if (bits.error()) return false;
     if (gof.kind == rlpc::GofKind::kSharedRig) {
-      return static_cast<bool>(parser_.tracks(bits, gof, models_));
+      return static_cast<bool>(parser_.tracks(bits, gof, rigs_));
     }
     return gof.kind == rlpc::GofKind::kSkinned &&
-           static_cast<bool>(parser_.bones(bits, gof, models_));
+           static_cast<bool>(parser_.bones(bits, gof, rigs_));
   }
-  // The GOF or skinned model so far, without the slices that could follow.
+  // The GOF or shared rig so far, without the slices that could follow.
   void finish() {
-    if (open_ == rlpc::UnitType::kModel) finish_model();
+    if (open_ == rlpc::UnitType::kRig) finish_rig();
     if (open_ == rlpc::UnitType::kGof) finish_gof();
     open_ = rlpc::UnitType::kSlice;
   }
 
  private:
-  void finish_model() {
-    const std::uint32_t idx = parser_.model_idx();
-    const auto model = parser_.finish_model();
-    const rlpc::OrderedMesh& mesh = meshes_[model->prediction];
-    check_influences(*model, rlpc::complete_influences(mesh, *model));
-    models_.of_idx[idx] = model;
+  void finish_rig() {
+    const std::uint32_t idx = parser_.rig_idx();
+    const auto rig = parser_.finish_rig();
+    const rlpc::OrderedMesh& mesh = meshes_[rig->prediction];
+    check_influences(*rig, rlpc::complete_influences(mesh, *rig));
+    rigs_.of_idx[idx] = rig;
     recons_[idx] =
-        std::make_shared<rlpc::ModelRecon>(mesh, *model, header_.position_bits, true);
+        std::make_shared<rlpc::RigRecon>(mesh, *rig, header_.position_bits, true);
   }
   void finish_gof() {
     const rlpc::SkinnedGof gof = parser_.finish();
-    if (gof.model) return decode(rlpc::SkinnedRecon(recons_[gof.model_idx], gof));
+    if (gof.rig) return decode(rlpc::SkinnedRecon(recons_[gof.rig_idx], gof));
     const rlpc::OrderedMesh& mesh = meshes_[gof.prediction];
     check_influences(gof, rlpc::complete_influences(mesh, gof));
     decode(rlpc::SkinnedRecon(mesh, gof, header_.position_bits));
@@ -130,9 +130,9 @@ class Units {
   const rlpc::SequenceHeader& header_;
   const rlpc::OrderedMeshes& meshes_;
   rlpc::SkinnedGofParser parser_;
-  rlpc::UnitType open_ = rlpc::UnitType::kSlice;  // neither GOF nor skinned model
-  rlpc::ModelSlots models_;
-  std::array<std::shared_ptr<const rlpc::ModelRecon>, rlpc::kMaxModels> recons_;
+  rlpc::UnitType open_ = rlpc::UnitType::kSlice;  // neither GOF nor shared rig
+  rlpc::RigSlots rigs_;
+  std::array<std::shared_ptr<const rlpc::RigRecon>, rlpc::kMaxRigs> recons_;
 };
 
 // In the Main profile, the first of the pieces is a GOF, and the others are its slices.
@@ -144,7 +144,7 @@ void decode(const rlpc::SequenceHeader& header, const rlpc::OrderedMeshes& meshe
     if (header.profile_idc >= rlpc::kProfileHigh) {
       if (pieces[i].empty()) return;
       unit = {rlpc::UnitType{pieces[i][0]}, unit.payload.subspan(1)};
-      if (unit.type < rlpc::UnitType::kGof || unit.type > rlpc::UnitType::kModel ||
+      if (unit.type < rlpc::UnitType::kGof || unit.type > rlpc::UnitType::kRig ||
           unit.type == rlpc::UnitType::kEndOfSequence) {
         return;
       }

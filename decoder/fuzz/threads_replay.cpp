@@ -103,7 +103,7 @@ std::vector<std::optional<Frame>> random_frames(const Bytes& stream, std::size_t
 }
 
 // Whether outcomes are those of a decoder with a single thread. What is announced is decoded
-// earlier or later with several, and models that a stream lacks fail then: where any request of
+// earlier or later with several, and rigs that a stream lacks fail then: where any request of
 // the single thread fails, only frames that both return are compared.
 bool are_equal(const std::vector<std::optional<Frame>>& outcomes,
                const std::vector<std::optional<Frame>>& single) {

@@ -20,7 +20,7 @@ const std::array<Part, kNumStreamParts>& parts() {
       {"sequence header", {"sequence_header"}},
       {"connectivity", {"connectivity"}},
       {"vertex order", {"vertex_order"}},
-      {"GOF headers", {"gof"}},  // and those of skinned models
+      {"GOF headers", {"gof"}},  // and those of shared rigs
       {"bones",
        {"bone_parent_plus1", "bone_pivot", "rotation_flag", "origin_flag", "rotation_step_idx",
         "rotation_order_minus1", "rotation_residual", "origin_step_idx", "origin_order",
@@ -63,7 +63,7 @@ std::size_t part_of_unit(UnitType type) {
     case UnitType::kVertexOrder:
       return 3;
     case UnitType::kGof:
-    case UnitType::kModel:
+    case UnitType::kRig:
     case UnitType::kSlice:
     case UnitType::kFrame:
       return 4;
@@ -141,14 +141,14 @@ void BitCounter::count(std::size_t part, std::uint64_t bits) {
 
 void BitCounter::close_unit() {
   const UnitType type{unit_type_};
-  if (type == UnitType::kGof || type == UnitType::kModel) {
-    of_model_ = type == UnitType::kModel;
-    (of_model_ ? model_bits_ : gof_bits_).emplace_back();
+  if (type == UnitType::kGof || type == UnitType::kRig) {
+    of_rig_ = type == UnitType::kRig;
+    (of_rig_ ? model_bits_ : gof_bits_).emplace_back();
   }
-  // Slices belong to the GOF or skinned model before them, hashes to the GOF.
-  const bool is_slice = type == UnitType::kSlice && of_model_;
-  std::vector<PartSizes>& list = type == UnitType::kModel || is_slice ? model_bits_ : gof_bits_;
-  if (type == UnitType::kGof || type == UnitType::kModel || is_slice_type(type) ||
+  // Slices belong to the GOF or shared rig before them, hashes to the GOF.
+  const bool is_slice = type == UnitType::kSlice && of_rig_;
+  std::vector<PartSizes>& list = type == UnitType::kRig || is_slice ? model_bits_ : gof_bits_;
+  if (type == UnitType::kGof || type == UnitType::kRig || is_slice_type(type) ||
       type == UnitType::kGofHash) {
     for (std::size_t p = 0; p < kNumStreamParts && !list.empty(); ++p) {
       list.back()[p] += unit_bits_[p];

@@ -1,4 +1,4 @@
-// Counts bits by purpose, for a stream and for each of its GOFs and skinned models.
+// Counts bits by purpose, for a stream and for each of its GOFs and shared rigs.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ class BitCounter final : public Trace {
   std::uint64_t num_units() const { return num_units_; }
   // The bits of each GOF with its slices and hashes; valid after finish().
   const std::vector<PartSizes>& gof_bits() const { return gof_bits_; }
-  // The same for each skinned model with its slices.
+  // The same for each shared rig with its slices.
   const std::vector<PartSizes>& model_bits() const { return model_bits_; }
 
  private:
@@ -53,7 +53,7 @@ class BitCounter final : public Trace {
   PartSizes unit_bits_{};  // of the current unit
   std::vector<PartSizes> gof_bits_;
   std::vector<PartSizes> model_bits_;
-  bool of_model_ = false;  // the last GOF or skinned model was one of the latter
+  bool of_rig_ = false;  // the last GOF or shared rig was one of the latter
 };
 
 }  // namespace rlpc

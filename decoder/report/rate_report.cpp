@@ -64,7 +64,7 @@ std::string temporal_layer_rows(const SlicedSummary& summary) {
   return html;
 }
 
-// A row per component group, a column per layer group, and the size of the GOF or skinned model
+// A row per component group, a column per layer group, and the size of the GOF or shared rig
 // when cut after each of them; and a row per temporal layer.
 template <class Summary>
 std::string slice_table(const Summary& summary, const std::string& to_here) {
@@ -74,7 +74,7 @@ std::string slice_table(const Summary& summary, const std::string& to_here) {
     html += "<th>" + std::to_string(layers) + (layers == 1 ? " layer</th>" : " layers</th>");
   }
   html += "<th>" + to_here + "</th></tr></thead>\n";
-  // From 1 in a GOF that uses a skinned model.
+  // From 1 in a GOF that uses a shared rig.
   const std::vector<SliceEntry> slices = summary.slices_by_group();
   std::uint32_t group = slices.front().component_group_idx;
   const auto end = std::find_if(slices.begin(), slices.end(),
@@ -117,7 +117,7 @@ std::string part_table(const StreamRates& rates, const std::vector<ChartSeries>&
   return html + "</table></div>\n";
 }
 
-// Skinned models are not in it: they belong to several GOFs.
+// Shared rigs are not in it: they belong to several GOFs.
 std::string gof_rate_chart(const StreamRates& rates) {
   const std::vector<GofSummary>& gofs = rates.summary->gofs;
   const std::vector<PartSizes>& bits = rates.counter->gof_bits();
@@ -149,7 +149,7 @@ std::string gof_rate_chart(const StreamRates& rates) {
   const std::string title =
       (together == 1 ? "Rate of each GOF"
                      : "Rate of " + std::to_string(together) + " GOFs each") +
-      std::string(rates.summary->models.empty() ? "" : ", without skinned models");
+      std::string(rates.summary->rigs.empty() ? "" : ", without shared rigs");
   return stacked_bars(title, "bits per vertex and frame", bars, series);
 }
 
@@ -180,28 +180,28 @@ std::vector<GofFigure> figures_of_all_kinds(const std::vector<GofSummary>& gofs)
 
 namespace {
 
-// Rows with the figures, bytes and slices of each skinned model.
-std::string model_table(const StreamRates& rates) {
-  const auto& models = rates.summary->models;
-  if (models.empty()) return "";
+// Rows with the figures, bytes and slices of each shared rig.
+std::string rig_table(const StreamRates& rates) {
+  const auto& rigs = rates.summary->rigs;
+  if (rigs.empty()) return "";
   std::string html =
-      "<div class=\"card wide\"><table>\n<thead><tr><th>skinned model</th><th>GOFs</th>";
-  for (const GofFigure& figure : models[0]->figures) {
+      "<div class=\"card wide\"><table>\n<thead><tr><th>shared rig</th><th>GOFs</th>";
+  for (const GofFigure& figure : rigs[0]->figures) {
     if (figure.many != nullptr) html += std::string("<th>") + figure.many + "</th>";
   }
   html += "<th>bytes</th></tr></thead>\n";
-  for (std::size_t m = 0; m < std::min(models.size(), kMaxGofRows); ++m) {
-    html += "<tr>" + cell(std::to_string(m)) + cell(grouped_text(models[m]->num_gofs));
-    for (const GofFigure& figure : models[m]->figures) {
+  for (std::size_t m = 0; m < std::min(rigs.size(), kMaxGofRows); ++m) {
+    html += "<tr>" + cell(std::to_string(m)) + cell(grouped_text(rigs[m]->num_gofs));
+    for (const GofFigure& figure : rigs[m]->figures) {
       if (figure.many != nullptr) html += cell(grouped_text(figure.value));
     }
     html += cell(grouped_text(sum(rates.counter->model_bits()[m]) / 8)) + "</tr>\n";
   }
   html += "</table></div>\n";
-  for (std::size_t m = 0; m < std::min(models.size(), kMaxSliceTables); ++m) {
-    if (models[m]->slices.empty()) continue;
-    html += "<details class=\"card\"><summary>Slices of skinned model " + std::to_string(m) +
-            "</summary>\n" + slice_table(*models[m], "model to here") + "</details>\n";
+  for (std::size_t m = 0; m < std::min(rigs.size(), kMaxSliceTables); ++m) {
+    if (rigs[m]->slices.empty()) continue;
+    html += "<details class=\"card\"><summary>Slices of shared rig " + std::to_string(m) +
+            "</summary>\n" + slice_table(*rigs[m], "rig to here") + "</details>\n";
   }
   return html;
 }
@@ -210,11 +210,11 @@ std::string model_table(const StreamRates& rates) {
 
 void add_gof_section(HtmlPage& page, const StreamRates& rates) {
   const std::vector<GofSummary>& gofs = rates.summary->gofs;
-  const bool has_models = !rates.summary->models.empty();
+  const bool has_rigs = !rates.summary->rigs.empty();
   const std::vector<GofFigure> columns = figures_of_all_kinds(gofs);
   std::string html =
-      model_table(rates) + "<div class=\"card wide\"><table>\n<thead><tr><th>frames</th>";
-  if (has_models) html += "<th>skinned model</th>";
+      rig_table(rates) + "<div class=\"card wide\"><table>\n<thead><tr><th>frames</th>";
+  if (has_rigs) html += "<th>shared rig</th>";
   for (const GofFigure& column : columns) html += std::string("<th>") + column.many + "</th>";
   html += "<th>bytes</th><th>bpvf</th></tr></thead>\n";
   const auto count = [](std::uint64_t n) { return cell(n == 0 ? "" : grouped_text(n)); };
@@ -222,7 +222,7 @@ void add_gof_section(HtmlPage& page, const StreamRates& rates) {
     const GofSummary& gof = gofs[g];
     const std::uint64_t bits = sum(rates.counter->gof_bits()[g]);
     html += "<tr>" + cell(frames_text(gof));
-    if (has_models) html += cell(gof.model ? std::to_string(gof.model->number) : "");
+    if (has_rigs) html += cell(gof.rig ? std::to_string(gof.rig->number) : "");
     for (const GofFigure& column : columns) html += count(gof.figure(column.key));
     html += count(bits / 8) +
             cell(number_text(static_cast<double>(bits) /
@@ -242,7 +242,7 @@ void add_gof_section(HtmlPage& page, const StreamRates& rates) {
   }
   page.add_section(
       "Groups of frames",
-      std::string(has_models ? "Each GOF decodes without the others, with its skinned model. "
+      std::string(has_rigs ? "Each GOF decodes without the others, with its shared rig. "
                              : "GOFs decode independently. ") +
           "Those of bones can be cut to fewer components or "
           "layers, those of frames to fewer layers, without re-encoding (rlpcinfo --extract).",

@@ -24,7 +24,7 @@ struct StreamRates {
 
 // Charts of the parts of the stream, and of the rate of each GOF over time.
 void add_rate_section(HtmlPage& page, const StreamRates& rates);
-// A table with a row per GOF and skinned model, and the contents of their slices.
+// A table with a row per GOF and shared rig, and the contents of their slices.
 void add_gof_section(HtmlPage& page, const StreamRates& rates);
 
 }  // namespace rlpc

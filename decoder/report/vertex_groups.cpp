@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <variant>
 
-#include "common/codec/kinds/skinned/recon/model_recon.h"
+#include "common/codec/kinds/skinned/recon/rig_recon.h"
 
 namespace rlpc {
 namespace {
@@ -24,7 +24,7 @@ void add_kind(const ClusterGof& gof, const StreamContext&, VertexGroups& groups)
 
 // Also those of slices that are absent, as the decoder predicts them.
 void add_kind(const SkinnedGof& gof, const StreamContext& context, VertexGroups& groups) {
-  const SkinnedModel& rig = gof.model ? *gof.model : gof;
+  const SharedRig& rig = gof.rig ? *gof.rig : gof;
   groups.kind = GroupKind::kBones;
   groups.num_groups = static_cast<std::uint32_t>(rig.bones.size());
   for (const Influences& influences :

@@ -64,11 +64,11 @@ TEST_F(Bones, AreThoseOfTheGreatestWeightOrOfSeveralTheFirst) {
   EXPECT_EQ(found(), (Groups{2, 1, 1}));
 }
 
-TEST_F(Bones, OfAGofOfTracksAreThoseOfItsModel) {
-  const auto model = std::make_shared<SkinnedModel>(static_cast<const SkinnedModel&>(gof_));
+TEST_F(Bones, OfAGofOfTracksAreThoseOfItsRig) {
+  const auto rig = std::make_shared<SharedRig>(static_cast<const SharedRig&>(gof_));
   gof_ = SkinnedGof();
   gof_.kind = GofKind::kSharedRig;
-  gof_.model = model;
+  gof_.rig = rig;
   EXPECT_EQ(found(), (Groups{2, 1, 1}));
 }
 

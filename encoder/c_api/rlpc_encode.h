@@ -113,7 +113,7 @@ typedef struct rlpc_encode_options {
   // cut; default 1, with which it cannot.
   uint32_t temporal_layers;
   // High profile: most frames that are held before they are encoded together, but at least
-  // those of one GOF; 0: as many as share a skinned model in memory, 2^23 positions or fewer.
+  // those of one GOF; 0: as many as share a shared rig in memory, 2^23 positions or fewer.
   uint32_t max_held_frames;
   uint32_t gof_kind;  // default RLPC_KIND_AUTO
   // High profile, 1: each frame is coded when it is added, in GOFs of frames; a KG error is

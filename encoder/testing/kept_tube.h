@@ -1,4 +1,4 @@
-// A tube that bends, and the skinned model of an earlier span of it.
+// A tube that bends, and the shared rig of an earlier span of it.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/testing/tube.h"
-#include "encoder/codec/kinds/skinned/quantise/kept_model.h"
+#include "encoder/codec/kinds/skinned/quantise/kept_rig.h"
 #include "encoder/codec/kinds/skinned/skinned_span_coder.h"
 #include "encoder/codec/spans/lagrangian.h"
 
@@ -45,7 +45,7 @@ class KeptTube {
     header_.num_vertices = kVertices;
     header_.position_bits = 20;
     const SpanFrames earlier = frames(bent, 0, kFrames, 1, true);
-    kept = SkinnedSpanCoder(context, earlier).encode(kTubeStep, kTubeStep).model;
+    kept = SkinnedSpanCoder(context, earlier).encode(kTubeStep, kTubeStep).rig;
   }
   KeptTube(const KeptTube&) = delete;
   KeptTube& operator=(const KeptTube&) = delete;
@@ -65,7 +65,7 @@ class KeptTube {
     }
     return list;
   }
-  // With a model of its own.
+  // With a rig of its own.
   EncodedSpan encode_alone(const SpanFrames& of) const {
     return SkinnedSpanCoder(context, of).encode(kTubeStep, kTubeStep);
   }
@@ -79,7 +79,7 @@ class KeptTube {
 
  public:
   SkinnedContext context;
-  std::shared_ptr<const KeptModel> kept;
+  std::shared_ptr<const KeptRig> kept;
 };
 
 }  // namespace rlpc

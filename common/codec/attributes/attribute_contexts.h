@@ -138,7 +138,7 @@ class TriangleContexts {
   // FindCandidates( t ): triangles before t, at most 3; values: of all triangles before t.
   std::span<const std::uint32_t> find_candidates(std::uint32_t t,
                                                  std::span<const std::uint32_t> values);
-  BitModel& same_model(std::size_t i) { return same_models_[num_candidates_][i]; }
+  BitModel& same_rig(std::size_t i) { return same_models_[num_candidates_][i]; }
   ResidualModels& models() { return models_; }
   std::array<BitModel, 64>& float_sizes() { return float_sizes_; }
   std::uint32_t expected(std::uint32_t c) const { return mean_[c] >> 4; }

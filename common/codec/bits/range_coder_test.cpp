@@ -139,12 +139,12 @@ TEST(RangeCoder, AnEmptySectionIsOneByte) {
 }
 
 // The symbols that a decoder reads from arbitrary bytes.
-Symbols symbols_of(const Bytes& bytes, std::size_t count, bool with_models) {
+Symbols symbols_of(const Bytes& bytes, std::size_t count, bool with_rigs) {
   RangeDecoder rd(bytes);
   std::vector<BitModel> models(kModels);
   Symbols symbols;
   for (std::size_t i = 0; i < count; ++i) {
-    const int model = with_models && i % 3 != 0 ? static_cast<int>(i % kModels) : -1;
+    const int model = with_rigs && i % 3 != 0 ? static_cast<int>(i % kModels) : -1;
     symbols.push_back({model, 1, 0});
     symbols.back().value = model < 0                                         ? rd.bypass(1)
                            : rd.bin(models[static_cast<std::size_t>(model)]) ? 1U
@@ -161,13 +161,13 @@ TEST(RangeCoder, CarriesPropagateThroughManyBytes) {
   std::size_t longest_zeros = 0;
   for (const int first : {0x01, 0x7F, 0x80, 0xC3}) {
     for (const bool below : {false, true}) {
-      for (const bool with_models : {false, true}) {
-        SCOPED_TRACE(testing::Message() << first << below << with_models);
+      for (const bool with_rigs : {false, true}) {
+        SCOPED_TRACE(testing::Message() << first << below << with_rigs);
         Bytes target(60, below ? 0xFF : 0x00);
         target[0] = static_cast<std::uint8_t>(first);
         target[1] = static_cast<std::uint8_t>(below ? 0x37 : 0x38);
         for (std::size_t cut = 1; cut < 8 * target.size(); ++cut) {
-          Symbols symbols = symbols_of(target, cut, with_models);
+          Symbols symbols = symbols_of(target, cut, with_rigs);
           for (const std::uint32_t last : {0U, 1U}) {
             symbols.push_back({-1, 1, last});
             const Bytes section = expect_round_trip(symbols);

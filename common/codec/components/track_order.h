@@ -26,7 +26,7 @@ struct TrackPlace {
 // 8.17.1 TrackOrder( between )
 Vector<TrackPlace> track_order(std::uint32_t num_frames, int track_levels, int between);
 
-// What the tracks of a GOF have in common; a skinned model has none.
+// What the tracks of a GOF have in common; a shared rig has none.
 struct TrackFrames {
   std::uint32_t count = 0;  // num_gof_frames
   int levels = 0;           // track_levels

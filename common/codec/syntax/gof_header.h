@@ -13,7 +13,7 @@ namespace rlpc {
 enum class GofKind : std::uint8_t {
   kClusters,  // 6.5: clusters in local coordinate frames
   kSkinned,   // 6.11: bones, and trajectories for the residual
-  kTracks,    // 6.13.1: the same, with the vertices of a skinned model
+  kTracks,    // 6.13.1: the same, with the vertices of a shared rig
   kFrames,    // 6.14: frames predicted from frames
 };
 

@@ -34,7 +34,7 @@ struct Level {
   std::uint64_t max_gof_values;         // vertices x frames per GOF
   std::uint64_t max_gof_factors;        // spatial and temporal values per GOF
   std::uint64_t max_unit_bytes;         // payload of a critical unit
-  std::uint64_t max_adaptive_values;    // adaptive factors of a GOF or skinned model x vertices
+  std::uint64_t max_adaptive_values;    // adaptive factors of a GOF or shared rig x vertices
   std::uint32_t max_learning_vertices;  // of a mesh whose frames learn weights
 };
 

@@ -27,7 +27,7 @@ enum class UnitType : std::uint8_t {
   kGof = 0x04,
   kEndOfSequence = 0x05,
   kSlice = 0x06,
-  kModel = 0x07,
+  kRig = 0x07,
   kFrame = 0x08,
   kGofIndex = 0x81,
   kGofHash = 0x82,
@@ -37,7 +37,7 @@ enum class UnitType : std::uint8_t {
   kClipTable = 0x8A,
 };
 
-// Units that belong to the GOF or skinned model unit before them.
+// Units that belong to the GOF or rig unit before them.
 constexpr bool is_slice_type(UnitType type) {
   return type == UnitType::kSlice || type == UnitType::kFrame;
 }

@@ -42,9 +42,9 @@ Bytes write_gof_hash(std::span<const std::uint32_t> position_crc, bool per_frame
 bool GofIndexEntries::fits() const {
   constexpr std::uint64_t kMost = 0xFFFFFFFE;
   std::uint64_t previous = 0;
-  for (const ModelIndexEntry& model : models) {
-    if (model.offset - previous > kMost) return false;
-    previous = model.offset;
+  for (const RigIndexEntry& rig : rigs) {
+    if (rig.offset - previous > kMost) return false;
+    previous = rig.offset;
   }
   return first_gof_offset <= kMost &&
          std::all_of(gofs.begin(), gofs.end(),
@@ -61,12 +61,12 @@ Bytes write_gof_index(const GofIndexEntries& index, std::uint32_t profile_idc) {
     w.ue(static_cast<std::uint32_t>(gof.bytes));
   }
   if (profile_idc >= kProfileHigh) {
-    w.ue(static_cast<std::uint32_t>(index.models.size()));
+    w.ue(static_cast<std::uint32_t>(index.rigs.size()));
     std::uint64_t previous = 0;
-    for (const ModelIndexEntry& model : index.models) {
-      w.u(3, model.model_idx);
-      w.ue(static_cast<std::uint32_t>(model.offset - previous));
-      previous = model.offset;
+    for (const RigIndexEntry& rig : index.rigs) {
+      w.u(3, rig.rig_idx);
+      w.ue(static_cast<std::uint32_t>(rig.offset - previous));
+      previous = rig.offset;
     }
   }
   w.byte_alignment();

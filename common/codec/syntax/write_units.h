@@ -23,15 +23,15 @@ struct GofEntry {
   std::uint32_t num_frames;
   std::uint64_t bytes;  // from its GOF unit to the next
 };
-// Of a skinned model unit.
-struct ModelIndexEntry {
-  std::uint32_t model_idx;
+// Of a rig unit.
+struct RigIndexEntry {
+  std::uint32_t rig_idx;
   std::uint64_t offset;  // bytes from the start of the stream, ascending
 };
 struct GofIndexEntries {
   std::uint64_t first_gof_offset = 0;
   Vector<GofEntry> gofs;
-  Vector<ModelIndexEntry> models;
+  Vector<RigIndexEntry> rigs;
 
   // R-IDX-02: whether all distances can be written.
   bool fits() const;

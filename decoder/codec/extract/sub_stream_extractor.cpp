@@ -14,9 +14,9 @@ namespace {
 
 // 8.6.2: hashes of the positions of an access unit, one per frame or one for the GOF.
 std::vector<std::uint32_t> position_crcs(const AccessUnit& access_unit,
-                                         const StreamContext& context, ModelRecons& models,
+                                         const StreamContext& context, RigRecons& rigs,
                                          bool per_frame) {
-  const auto recon = make_recon(access_unit, context, models);
+  const auto recon = make_recon(access_unit, context, rigs);
   std::vector<std::int32_t> positions(3 * std::size_t{context.header.num_vertices});
   std::vector<std::uint32_t> crcs;
   std::uint32_t crc = 0;
@@ -30,10 +30,10 @@ std::vector<std::uint32_t> position_crcs(const AccessUnit& access_unit,
 }
 
 Result<StreamSummary> check_gofs(StreamReader& stream) {
-  ModelRecons models(stream.context());
+  RigRecons rigs(stream.context());
   return summarise_all(stream, [&](const AccessUnit& access_unit) -> std::optional<Error> {
     const std::optional<GofHash>& hash = access_unit.hash;
-    if (!hash || position_crcs(access_unit, stream.context(), models, hash->per_frame_flag) ==
+    if (!hash || position_crcs(access_unit, stream.context(), rigs, hash->per_frame_flag) ==
                      hash->position_crc) {
       return std::nullopt;
     }
@@ -93,9 +93,9 @@ Result<SubStreamExtractor> SubStreamExtractor::open(std::unique_ptr<ByteSource> 
 }
 
 bool SubStreamExtractor::cuts_any() const {
-  const auto& [models, gofs] = summary_;
-  return std::any_of(models.begin(), models.end(),
-                     [this](const auto& model) { return model->is_cut_by(cut_); }) ||
+  const auto& [rigs, gofs] = summary_;
+  return std::any_of(rigs.begin(), rigs.end(),
+                     [this](const auto& rig) { return rig->is_cut_by(cut_); }) ||
          std::any_of(gofs.begin(), gofs.end(),
                      [this](const GofSummary& gof) { return gof.is_cut_by(cut_); });
 }
@@ -120,8 +120,8 @@ Result<Bytes> SubStreamExtractor::next_unit() {
   if (!unit) return unit.error();
   offset_ = unit->end();
   switch (unit->type()) {
-    case UnitType::kModel:
-      return model(*unit);
+    case UnitType::kRig:
+      return rig(*unit);
     case UnitType::kGof:
       return gof(*unit);
     case UnitType::kSlice:
@@ -165,7 +165,7 @@ bool SubStreamExtractor::cuts_first_frame() const {
   const GofSummary& gof = summary_.gofs.front();
   SliceCut cut = cut_;
   if (gof.kind == GofKind::kInter) cut.max_temporal_layers = SliceCut::kAll;
-  return gof.is_cut_by(cut) || (gof.model && gof.model->is_cut_by(cut));
+  return gof.is_cut_by(cut) || (gof.rig && gof.rig->is_cut_by(cut));
 }
 
 Result<Bytes> SubStreamExtractor::gof(const UnitHeader& unit) {
@@ -181,11 +181,11 @@ Result<Bytes> SubStreamExtractor::gof(const UnitHeader& unit) {
   return copy(unit);
 }
 
-Result<Bytes> SubStreamExtractor::model(const UnitHeader& unit) {
-  if (const auto ok = cut_reader_->models.read(unit); !ok) return ok.error();
-  const ModelSummary& model = *summary_.models[num_models_++];
-  index_.models.push_back({model.model_idx, written_});
-  open_ = {unit, &model, nullptr, model.groups_that_stay(cut_)};
+Result<Bytes> SubStreamExtractor::rig(const UnitHeader& unit) {
+  if (const auto ok = cut_reader_->rigs.read(unit); !ok) return ok.error();
+  const RigSummary& rig = *summary_.rigs[num_rigs_++];
+  index_.rigs.push_back({rig.rig_idx, written_});
+  open_ = {unit, &rig, nullptr, rig.groups_that_stay(cut_)};
   return copy(unit);
 }
 
@@ -206,10 +206,10 @@ Result<Bytes> SubStreamExtractor::hash(const UnitHeader& unit) {
 
 // 8.6.2 Hash check, of the same kind as in the input
 Result<Bytes> SubStreamExtractor::new_hash() {
-  const auto models = cut_reader_->models.at(open_->unit.offset);
-  if (!models) return models.error();
+  const auto rigs = cut_reader_->rigs.at(open_->unit.offset);
+  if (!rigs) return rigs.error();
   const auto access_unit =
-      cut_reader_->units.read(open_->unit, open_->gof->first_frame, *models);
+      cut_reader_->units.read(open_->unit, open_->gof->first_frame, *rigs);
   if (!access_unit) return access_unit.error();
   const bool per_frame = access_unit->hash->per_frame_flag;
   return write_unit(UnitType::kGofHash,

@@ -9,19 +9,19 @@
 
 #include "common/codec/syntax/write_units.h"
 #include "common/result.h"
-#include "decoder/codec/gofs/model_recons.h"
+#include "decoder/codec/gofs/rig_recons.h"
 #include "decoder/codec/slice_cut.h"
 #include "decoder/codec/units/access_unit_reader.h"
 #include "decoder/codec/units/byte_source.h"
 #include "decoder/codec/units/gof_summary.h"
-#include "decoder/codec/units/stream_models.h"
+#include "decoder/codec/units/stream_rigs.h"
 #include "decoder/codec/units/stream_reader.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
 
-// Writes access units and skinned models, with new hashes where slices of the GOF or of its
-// model are dropped, and the GOF index directly before the end of the sequence. Other units are
+// Writes access units and shared rigs, with new hashes where slices of the GOF or of its
+// rig are dropped, and the GOF index directly before the end of the sequence. Other units are
 // copied in their order, except hash units that follow no GOF (R-HSH-03) and GOF indices
 // elsewhere (R-IDX-04), which are dropped. If no slice is dropped, a conforming stream is
 // copied; only the last index_gof_bytes may grow, to reach the index. Attributes that are
@@ -36,9 +36,9 @@ class SubStreamExtractor {
   const SequenceHeader& header() const { return stream_->header(); }
   std::uint32_t num_frames() const { return summary_.num_frames(); }
   std::uint64_t size() const { return stream_->units().size(); }  // of the input
-  // The GOFs and skinned models of the input. Cluster GOFs have no slices and are kept whole.
+  // The GOFs and shared rigs of the input. Cluster GOFs have no slices and are kept whole.
   const StreamSummary& summary() const { return summary_; }
-  // Of a GOF or skinned model.
+  // Of a GOF or shared rig.
   template <class Summary>
   SliceTotals totals_that_stay(const Summary& summary) const {
     return summary.totals(summary.groups_that_stay(cut_));
@@ -58,7 +58,7 @@ class SubStreamExtractor {
   Result<Bytes> copy(const UnitHeader& unit);
   Result<Bytes> attributes(const UnitHeader& unit);
   bool cuts_first_frame() const;
-  Result<Bytes> model(const UnitHeader& unit);
+  Result<Bytes> rig(const UnitHeader& unit);
   Result<Bytes> gof(const UnitHeader& unit);
   Result<Bytes> slice(const UnitHeader& unit);
   Result<Bytes> hash(const UnitHeader& unit);
@@ -70,12 +70,12 @@ class SubStreamExtractor {
   struct CutReader {
     CutReader(StreamReader& stream, const DecoderOptions& options)
         : units(stream.units(), stream.context(), options),
-          models(stream.units(), units),
+          rigs(stream.units(), units),
           recons(stream.context()) {}
 
     AccessUnitReader units;
-    StreamModels models;
-    ModelRecons recons;
+    StreamRigs rigs;
+    RigRecons recons;
   };
   std::unique_ptr<CutReader> cut_reader_;
   SliceCut cut_;
@@ -83,18 +83,18 @@ class SubStreamExtractor {
 
   std::uint64_t offset_ = 0;   // in the input
   std::uint64_t written_ = 0;  // bytes of the output so far
-  // The GOF or skinned model that slices belong to.
+  // The GOF or shared rig that slices belong to.
   struct OpenUnit {
     UnitHeader unit;
     const SlicedSummary* summary = nullptr;
-    const GofSummary* gof = nullptr;  // null: a skinned model
+    const GofSummary* gof = nullptr;  // null: a shared rig
     SliceGroups groups;               // groups that are kept
     std::size_t num_slices = 0;       // so far
   };
   std::optional<OpenUnit> open_;
   // So far:
   std::size_t num_gofs_ = 0;
-  std::size_t num_models_ = 0;
+  std::size_t num_rigs_ = 0;
   bool has_index_ = false;
   bool drops_attributes_ = false;
   std::uint64_t gof_offset_ = 0;

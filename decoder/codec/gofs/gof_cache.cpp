@@ -51,11 +51,11 @@ std::uint64_t GofCache::bytes() const {
   std::uint64_t sum = 0;
   for (auto gof = gofs_.begin(); gof != gofs_.end(); ++gof) {
     sum += (*gof)->gof.memory_bytes;
-    const SkinnedModel* const model = (*gof)->gof.model.get();
+    const SharedRig* const rig = (*gof)->gof.rig.get();
     const bool is_first = std::none_of(gofs_.begin(), gof, [&](const auto& before) {
-      return before->gof.model.get() == model;
+      return before->gof.rig.get() == rig;
     });
-    if (model != nullptr && is_first) sum += memory_of_model(*model);
+    if (rig != nullptr && is_first) sum += memory_of_rig(*rig);
   }
   return sum;
 }

@@ -27,7 +27,7 @@ struct LoadedGof : Owned {
 // Drops those that have not been used for longest.
 class GofCache {
  public:
-  // max_bytes: of all GOFs, with the skinned models that they use.
+  // max_bytes: of all GOFs, with the shared rigs that they use.
   explicit GofCache(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}
 
   void set_max_bytes(std::uint64_t max_bytes);

@@ -33,19 +33,19 @@ std::unique_ptr<GofRecon> of_kind(Recon recon) {
 }
 
 std::unique_ptr<GofRecon> recon_of(const ClusterGof& gof, const StreamContext& context,
-                                   ModelRecons&) {
+                                   RigRecons&) {
   return of_kind(ClusterRecon(context.header, context.topology, gof));
 }
 
 std::unique_ptr<GofRecon> recon_of(const SkinnedGof& gof, const StreamContext& context,
-                                   ModelRecons& models) {
-  if (gof.model) return of_kind(SkinnedRecon(models.of(gof.model), gof));
+                                   RigRecons& rigs) {
+  if (gof.rig) return of_kind(SkinnedRecon(rigs.of(gof.rig), gof));
   return of_kind(
       SkinnedRecon((*context.meshes)[gof.prediction], gof, context.header.position_bits));
 }
 
 std::unique_ptr<GofRecon> recon_of(const InterGof& gof, const StreamContext& context,
-                                   ModelRecons&) {
+                                   RigRecons&) {
   return std::make_unique<OrderedRecon>((*context.meshes)[Prediction::kLayers], gof,
                                         context.header.position_bits);
 }
@@ -53,8 +53,8 @@ std::unique_ptr<GofRecon> recon_of(const InterGof& gof, const StreamContext& con
 }  // namespace
 
 std::unique_ptr<GofRecon> make_recon(const AccessUnit& access_unit,
-                                     const StreamContext& context, ModelRecons& models) {
-  return std::visit([&](const auto& gof) { return recon_of(gof, context, models); },
+                                     const StreamContext& context, RigRecons& rigs) {
+  return std::visit([&](const auto& gof) { return recon_of(gof, context, rigs); },
                     access_unit.gof);
 }
 

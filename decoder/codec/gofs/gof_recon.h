@@ -10,7 +10,7 @@
 #include "common/codec/mesh/skeleton.h"
 #include "common/codec/syntax/stream_context.h"
 #include "common/memory/owned.h"
-#include "decoder/codec/gofs/model_recons.h"
+#include "decoder/codec/gofs/rig_recons.h"
 
 namespace rlpc {
 
@@ -45,8 +45,8 @@ class GofRecon : public Owned {
 };
 
 // 8.1 Decoding a GOF. The access unit is only read, during the call; the context must outlive
-// the result. models: of the same stream. Cannot fail: parsing has checked every range.
+// the result. rigs: of the same stream. Cannot fail: parsing has checked every range.
 std::unique_ptr<GofRecon> make_recon(const AccessUnit& access_unit,
-                                     const StreamContext& context, ModelRecons& models);
+                                     const StreamContext& context, RigRecons& rigs);
 
 }  // namespace rlpc

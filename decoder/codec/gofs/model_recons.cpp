@@ -1,4 +1,4 @@
-#include "decoder/codec/gofs/model_recons.h"
+#include "decoder/codec/gofs/rig_recons.h"
 
 #include <algorithm>
 #include <utility>
@@ -7,27 +7,27 @@
 
 namespace rlpc {
 
-void ModelRecons::erase_unused() {
+void RigRecons::erase_unused() {
   const std::lock_guard lock(listing_);
-  std::erase_if(entries_, [](const auto& entry) { return entry->model.use_count() == 1; });
+  std::erase_if(entries_, [](const auto& entry) { return entry->rig.use_count() == 1; });
 }
 
-std::shared_ptr<ModelRecons::Entry> ModelRecons::entry_of(
-    const std::shared_ptr<const SkinnedModel>& model) {
+std::shared_ptr<RigRecons::Entry> RigRecons::entry_of(
+    const std::shared_ptr<const SharedRig>& rig) {
   const std::lock_guard lock(listing_);
   const auto found = std::find_if(entries_.begin(), entries_.end(),
-                                  [&](const auto& entry) { return entry->model == model; });
+                                  [&](const auto& entry) { return entry->rig == rig; });
   if (found != entries_.end()) return *found;
-  return entries_.emplace_back(make_shared_owned<Entry>(model));
+  return entries_.emplace_back(make_shared_owned<Entry>(rig));
 }
 
-std::shared_ptr<const ModelRecon> ModelRecons::of(
-    const std::shared_ptr<const SkinnedModel>& model) {
+std::shared_ptr<const RigRecon> RigRecons::of(
+    const std::shared_ptr<const SharedRig>& rig) {
   erase_unused();
-  const std::shared_ptr<Entry> entry = entry_of(model);
+  const std::shared_ptr<Entry> entry = entry_of(rig);
   const std::lock_guard lock(entry->making);
   if (!entry->recon) {
-    entry->recon = make_shared_owned<ModelRecon>((*context_.meshes)[model->prediction], *model,
+    entry->recon = make_shared_owned<RigRecon>((*context_.meshes)[rig->prediction], *rig,
                                                  context_.header.position_bits, true);
   }
   return entry->recon;

@@ -32,9 +32,9 @@ std::optional<Prefetch::Found> Prefetch::take(List& from, List::iterator which) 
   std::optional<Found> found;
   if (which->done.get() && which->gof) {
     found = Found{std::move(*which->gof), which->coded.end()};
-    for (const auto& model : which->new_models) {
-      if (const ParsedModel* const parsed = parse(*model)) {
-        stream_.models().add(model->offset, model->end, *parsed);
+    for (const auto& rig : which->new_models) {
+      if (const ParsedRig* const parsed = parse(*rig)) {
+        stream_.rigs().add(rig->offset, rig->end, *parsed);
       }
     }
   }
@@ -78,7 +78,7 @@ void Prefetch::fill(std::uint64_t offset, std::uint32_t first_frame, std::size_t
     if (!next) return;
     offset = next->coded.end();
     first_frame = next->coded.end_frame();
-    slots_ = next->models;
+    slots_ = next->rigs;
     gofs_.push_back(std::move(*next));
     start(gofs_.back());
   }
@@ -102,26 +102,26 @@ void Prefetch::ask(const GofPlace& place, std::uint32_t frame) {
   start(asked_.back());
 }
 
-// The units of a GOF, and of the skinned models that have to be parsed before it.
+// The units of a GOF, and of the shared rigs that have to be parsed before it.
 std::optional<Prefetch::Ahead> Prefetch::collect_at(const GofPlace& place) {
   std::uint64_t bytes_left = max_memory_bytes_;
   Ahead ahead;
-  for (const StreamModels::Alive& alive : stream_.models().find_alive(place.offset)) {
-    auto& slot = ahead.models[alive.model_idx];
-    if (alive.model) {
-      slot = make_shared_owned<ModelAhead>();
+  for (const StreamRigs::Alive& alive : stream_.rigs().find_alive(place.offset)) {
+    auto& slot = ahead.rigs[alive.rig_idx];
+    if (alive.rig) {
+      slot = make_shared_owned<RigAhead>();
       slot->is_tried = true;
-      slot->parsed = ParsedModel{alive.model_idx, alive.model, {}, 0};
+      slot->parsed = ParsedRig{alive.rig_idx, alive.rig, {}, 0};
       continue;
     }
     const auto unit = stream_.units().header_at(alive.offset);
-    if (!unit || unit->type() != UnitType::kModel) return std::nullopt;
-    auto model = collect_model(*unit, bytes_left);
-    if (!model) return std::nullopt;
-    for (const RawUnit& part : model->coded) bytes_left -= part.payload.size();
-    model->before = ahead.models;
-    slot = model;
-    ahead.new_models.push_back(std::move(model));
+    if (!unit || unit->type() != UnitType::kRig) return std::nullopt;
+    auto rig = collect_rig(*unit, bytes_left);
+    if (!rig) return std::nullopt;
+    for (const RawUnit& part : rig->coded) bytes_left -= part.payload.size();
+    rig->before = ahead.rigs;
+    slot = rig;
+    ahead.new_models.push_back(std::move(rig));
   }
   const auto unit = stream_.units().header_at(place.offset);
   if (!unit || unit->type() != UnitType::kGof) return std::nullopt;
@@ -131,38 +131,38 @@ std::optional<Prefetch::Ahead> Prefetch::collect_at(const GofPlace& place) {
   return ahead;
 }
 
-void Prefetch::hand_over_models() {
+void Prefetch::hand_over_rigs() {
   if (gofs_.empty() || gofs_.front().coded.gof.first_frame != stream_.next_first_frame())
     return;
-  for (const auto& model : gofs_.front().new_models) {
-    const ParsedModel* parsed = parse(*model);
+  for (const auto& rig : gofs_.front().new_models) {
+    const ParsedRig* parsed = parse(*rig);
     if (parsed == nullptr) return;
-    stream_.models().add(model->offset, model->end, *parsed);
+    stream_.rigs().add(rig->offset, rig->end, *parsed);
   }
 }
 
-// The models alive at an offset, as the stream has them.
+// The rigs alive at an offset, as the stream has them.
 bool Prefetch::start_slots(std::uint64_t offset) {
   slots_ = {};
-  const auto models = stream_.models().at(offset);
-  if (!models) return false;
+  const auto rigs = stream_.rigs().at(offset);
+  if (!rigs) return false;
   for (std::size_t m = 0; m < slots_.size(); ++m) {
-    if (!models->of_idx[m]) continue;
-    slots_[m] = make_shared_owned<ModelAhead>();
+    if (!rigs->of_idx[m]) continue;
+    slots_[m] = make_shared_owned<RigAhead>();
     slots_[m]->is_tried = true;
-    slots_[m]->parsed = ParsedModel{static_cast<std::uint32_t>(m), models->of_idx[m], {}, 0};
+    slots_[m]->parsed = ParsedRig{static_cast<std::uint32_t>(m), rigs->of_idx[m], {}, 0};
   }
   return true;
 }
 
-// Finds the next GOF, past ancillary units and skinned models. Reads nothing beyond the end of
+// Finds the next GOF, past ancillary units and shared rigs. Reads nothing beyond the end of
 // the sequence.
 std::optional<Prefetch::Ahead> Prefetch::collect(std::uint64_t offset,
                                                  std::uint32_t first_frame) {
   UnitReader& units = stream_.units();
   std::uint64_t bytes_left = max_memory_bytes_;
   Ahead ahead;
-  ahead.models = slots_;
+  ahead.rigs = slots_;
   while (offset < units.size()) {
     const auto unit = units.header_at(offset);
     if (!unit) return std::nullopt;
@@ -174,67 +174,67 @@ std::optional<Prefetch::Ahead> Prefetch::collect(std::uint64_t offset,
       return ahead;
     }
     if (unit->ancillary()) continue;
-    if (unit->type() != UnitType::kModel || ahead.new_models.size() == kMaxModels) {
+    if (unit->type() != UnitType::kRig || ahead.new_models.size() == kMaxRigs) {
       return std::nullopt;
     }
-    auto model = collect_model(*unit, bytes_left);
-    if (!model) return std::nullopt;
-    for (const RawUnit& part : model->coded) bytes_left -= part.payload.size();
-    model->before = ahead.models;
-    const RawUnit& first = model->coded.front();
+    auto rig = collect_rig(*unit, bytes_left);
+    if (!rig) return std::nullopt;
+    for (const RawUnit& part : rig->coded) bytes_left -= part.payload.size();
+    rig->before = ahead.rigs;
+    const RawUnit& first = rig->coded.front();
     BitReader r = units.bits(first.header, first.payload);
-    ahead.models[parse_model_idx(r)] = model;
-    offset = model->end;
-    ahead.new_models.push_back(std::move(model));
+    ahead.rigs[parse_rig_idx(r)] = rig;
+    offset = rig->end;
+    ahead.new_models.push_back(std::move(rig));
   }
   return std::nullopt;
 }
 
-std::shared_ptr<Prefetch::ModelAhead> Prefetch::collect_model(const UnitHeader& unit,
+std::shared_ptr<Prefetch::RigAhead> Prefetch::collect_rig(const UnitHeader& unit,
                                                               std::uint64_t max_bytes) {
-  auto coded = stream_.access_units().collect_model(unit, max_bytes);
+  auto coded = stream_.access_units().collect_rig(unit, max_bytes);
   if (!coded) return nullptr;
-  auto model = make_shared_owned<ModelAhead>();
-  model->offset = unit.offset;
-  model->end = coded->back().header.end();
-  model->coded = std::move(*coded);
-  return model;
+  auto rig = make_shared_owned<RigAhead>();
+  rig->offset = unit.offset;
+  rig->end = coded->back().header.end();
+  rig->coded = std::move(*coded);
+  return rig;
 }
 
-const ParsedModel* Prefetch::parse(ModelAhead& model) const {
-  const std::lock_guard lock(model.parsing);
-  if (!model.is_tried) {
-    const auto before = parse(model.before);
-    model.before = {};
+const ParsedRig* Prefetch::parse(RigAhead& rig) const {
+  const std::lock_guard lock(rig.parsing);
+  if (!rig.is_tried) {
+    const auto before = parse(rig.before);
+    rig.before = {};
     if (before) {
       auto parsed =
-          stream_.access_units().parse_model(model.coded, *before, cut_, max_memory_bytes_);
-      if (parsed) model.parsed = std::move(*parsed);
+          stream_.access_units().parse_rig(rig.coded, *before, cut_, max_memory_bytes_);
+      if (parsed) rig.parsed = std::move(*parsed);
     }
-    model.coded = {};
-    model.is_tried = true;
+    rig.coded = {};
+    rig.is_tried = true;
   }
-  return model.parsed ? &*model.parsed : nullptr;
+  return rig.parsed ? &*rig.parsed : nullptr;
 }
 
-std::optional<ModelSlots> Prefetch::parse(const Slots& slots) const {
-  ModelSlots models;
+std::optional<RigSlots> Prefetch::parse(const Slots& slots) const {
+  RigSlots rigs;
   for (std::size_t m = 0; m < slots.size(); ++m) {
     if (!slots[m]) continue;
-    const ParsedModel* parsed = parse(*slots[m]);
-    if (parsed == nullptr || parsed->model_idx != m) return std::nullopt;
-    models.of_idx[m] = parsed->model;
+    const ParsedRig* parsed = parse(*slots[m]);
+    if (parsed == nullptr || parsed->rig_idx != m) return std::nullopt;
+    rigs.of_idx[m] = parsed->rig;
   }
-  return models;
+  return rigs;
 }
 
 std::optional<PreparedGof> Prefetch::parse(const Ahead& ahead) const {
-  const auto models = parse(ahead.models);
-  if (!models) return std::nullopt;
+  const auto rigs = parse(ahead.rigs);
+  if (!rigs) return std::nullopt;
   auto access_unit =
-      stream_.access_units().parse(ahead.coded, *models, cut_, max_memory_bytes_);
+      stream_.access_units().parse(ahead.coded, *rigs, cut_, max_memory_bytes_);
   if (!access_unit) return std::nullopt;
-  return prepare(std::move(*access_unit), stream_.context(), models_, max_frame_bytes_);
+  return prepare(std::move(*access_unit), stream_.context(), rigs_, max_frame_bytes_);
 }
 
 }  // namespace rlpc

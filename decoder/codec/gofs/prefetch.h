@@ -12,7 +12,7 @@
 
 #include "common/memory/owned.h"
 #include "common/parallel/for_each.h"
-#include "decoder/codec/gofs/model_recons.h"
+#include "decoder/codec/gofs/rig_recons.h"
 #include "decoder/codec/gofs/prepared_gof.h"
 #include "decoder/codec/units/stream_reader.h"
 
@@ -25,14 +25,14 @@ class Prefetch {
     std::uint64_t end;  // of its units, bytes from the start of the stream
   };
 
-  // Stream, models and threads must outlive it. threads: for loops within a GOF.
+  // Stream, rigs and threads must outlive it. threads: for loops within a GOF.
   // max_memory_bytes: of each GOF; max_frame_bytes: as of prepare(). At most `most_asked` GOFs
   // that were asked for are kept.
-  Prefetch(StreamReader& stream, ModelRecons& models, ThreadPool& threads,
+  Prefetch(StreamReader& stream, RigRecons& rigs, ThreadPool& threads,
            std::uint64_t max_memory_bytes, std::uint64_t max_frame_bytes,
            std::size_t most_asked)
       : stream_(stream),
-        models_(models),
+        rigs_(rigs),
         threads_(threads),
         cut_(stream.access_units().cut()),
         max_memory_bytes_(max_memory_bytes),
@@ -46,8 +46,8 @@ class Prefetch {
   // being done. Drops the one asked for before all others if there are too many.
   void ask(const GofPlace& place, std::uint32_t frame);
   bool has_asked(std::uint32_t frame) const;
-  // Hands the skinned models between the position of the stream and the next GOF over to it.
-  void hand_over_models();
+  // Hands the shared rigs between the position of the stream and the next GOF over to it.
+  void hand_over_rigs();
   // The GOF whose unit is at the offset, if it was prepared without an error; waits for it.
   // Otherwise drops those that follow in the stream.
   std::optional<Found> take(std::uint64_t offset, std::uint32_t first_frame);
@@ -55,23 +55,23 @@ class Prefetch {
   void clear();
 
  private:
-  // A skinned model that is parsed by the first thread that needs it.
-  struct ModelAhead {
+  // A shared rig that is parsed by the first thread that needs it.
+  struct RigAhead {
     std::uint64_t offset = 0;
     std::uint64_t end = 0;
     Vector<RawUnit> coded;
-    std::array<std::shared_ptr<ModelAhead>, kMaxModels> before;  // those alive
+    std::array<std::shared_ptr<RigAhead>, kMaxRigs> before;  // those alive
     std::mutex parsing;
     bool is_tried = false;
-    std::optional<ParsedModel> parsed;
+    std::optional<ParsedRig> parsed;
   };
-  using Slots = std::array<std::shared_ptr<ModelAhead>, kMaxModels>;  // by model_idx
+  using Slots = std::array<std::shared_ptr<RigAhead>, kMaxRigs>;  // by rig_idx
 
   struct Ahead {
     RawAccessUnit coded;
-    // Since the GOF before; at most kMaxModels, or the GOF is not prepared.
-    Vector<std::shared_ptr<ModelAhead>> new_models;
-    Slots models;                    // those alive
+    // Since the GOF before; at most kMaxRigs, or the GOF is not prepared.
+    Vector<std::shared_ptr<RigAhead>> new_models;
+    Slots rigs;                    // those alive
     std::uint32_t first_wanted = 0;  // frame of the GOF
     std::optional<PreparedGof> gof;
     std::future<bool> done;
@@ -90,14 +90,14 @@ class Prefetch {
   std::optional<Ahead> collect_at(const GofPlace& place);
   bool start_slots(std::uint64_t offset);
   std::optional<Ahead> collect(std::uint64_t offset, std::uint32_t first_frame);
-  std::shared_ptr<ModelAhead> collect_model(const UnitHeader& unit, std::uint64_t max_bytes);
-  // Null if the model has an error.
-  const ParsedModel* parse(ModelAhead& model) const;
-  std::optional<ModelSlots> parse(const Slots& slots) const;
+  std::shared_ptr<RigAhead> collect_rig(const UnitHeader& unit, std::uint64_t max_bytes);
+  // Null if the rig has an error.
+  const ParsedRig* parse(RigAhead& rig) const;
+  std::optional<RigSlots> parse(const Slots& slots) const;
   std::optional<PreparedGof> parse(const Ahead& ahead) const;
 
   StreamReader& stream_;
-  ModelRecons& models_;
+  RigRecons& rigs_;
   ThreadPool& threads_;
   const SliceCut cut_;  // of its own: the stream's may change while threads parse
   std::uint64_t max_memory_bytes_;

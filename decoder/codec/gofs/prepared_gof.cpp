@@ -32,7 +32,7 @@ std::uint64_t memory_of(const SkinnedGof& gof, const SequenceHeader& header) {
       memory_of_tracks(std::uint64_t{3} * gof.num_frames * (factors + 4 * gof.bones.size())) +
       memory_of_trajectories(factors);
   const std::uint64_t of_factors = memory_of_spatial(header.num_vertices, factors);
-  if (gof.model) return of_tracks + of_factors;
+  if (gof.rig) return of_tracks + of_factors;
   return of_tracks + of_factors + memory_of_spatial(header.num_vertices, kRestFactors) +
          memory_of_vertices(header.num_vertices, gof.rest.order_flag);
 }
@@ -47,16 +47,16 @@ std::uint64_t memory_of(const InterGof& gof, const SequenceHeader& header) {
 
 }  // namespace
 
-PreparedGof prepare(AccessUnit access_unit, const StreamContext& context, ModelRecons& models,
+PreparedGof prepare(AccessUnit access_unit, const StreamContext& context, RigRecons& rigs,
                     std::uint64_t max_frame_bytes) {
   PreparedGof gof;
-  gof.recon = make_recon(access_unit, context, models);
+  gof.recon = make_recon(access_unit, context, rigs);
   gof.header = access_unit.header();
   gof.hash = std::move(access_unit.hash);
   gof.frame_crcs = access_unit.frame_crcs();
   gof.is_cut = access_unit.is_cut;
   if (const auto* const skinned = std::get_if<SkinnedGof>(&access_unit.gof)) {
-    gof.model = skinned->model;
+    gof.rig = skinned->rig;
   }
   gof.memory_bytes =
       std::visit([&](const auto& g) { return memory_of(g, context.header); }, access_unit.gof);

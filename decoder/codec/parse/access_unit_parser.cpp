@@ -17,7 +17,7 @@ class GofParser : public Owned {
  public:
   virtual ~GofParser() = default;
   // The GOF unit after its header.
-  virtual Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots& models) = 0;
+  virtual Result<bool> gof(BitReader& r, const GofHeader& header, const RigSlots& rigs) = 0;
   // A slice or frame unit: adds it, without its bytes, unless the cut drops it.
   virtual Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
                              Vector<SliceEntry>& slices);
@@ -39,8 +39,8 @@ class ClusterParser final : public GofParser {
   ClusterParser(const StreamContext& context, const MemoryLimit& memory)
       : context_(context), memory_(memory) {}
 
-  Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots& models) override {
-    memory_.bytes_in_use += memory_of_models(models);
+  Result<bool> gof(BitReader& r, const GofHeader& header, const RigSlots& rigs) override {
+    memory_.bytes_in_use += memory_of_rigs(rigs);
     auto gof = parse_clusters(r, context_.header, context_.topology, header, memory_);
     if (!gof) return gof.error();
     gof_ = std::move(*gof);
@@ -59,9 +59,9 @@ class SkinnedParser final : public GofParser {
   SkinnedParser(const StreamContext& context, const MemoryLimit& memory, const SliceCut& cut)
       : parser_(context.header, *context.meshes, memory, cut) {}
 
-  Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots& models) override {
-    return header.kind == GofKind::kSharedRig ? parser_.tracks(r, header, models)
-                                              : parser_.bones(r, header, models);
+  Result<bool> gof(BitReader& r, const GofHeader& header, const RigSlots& rigs) override {
+    return header.kind == GofKind::kSharedRig ? parser_.tracks(r, header, rigs)
+                                              : parser_.bones(r, header, rigs);
   }
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
                      Vector<SliceEntry>& slices) override {
@@ -83,8 +83,8 @@ class FramesParser final : public GofParser {
   FramesParser(const StreamContext& context, const MemoryLimit& memory, const SliceCut& cut)
       : context_(context), memory_(memory), cut_(cut) {}
 
-  Result<bool> gof(BitReader& r, const GofHeader& header, const ModelSlots& models) override {
-    memory_.bytes_in_use += memory_of_models(models);
+  Result<bool> gof(BitReader& r, const GofHeader& header, const RigSlots& rigs) override {
+    memory_.bytes_in_use += memory_of_rigs(rigs);
     parser_.emplace(context_.header, (*context_.meshes)[Prediction::kLayers], memory_, cut_);
     return parser_->gof(r, header);
   }
@@ -127,14 +127,14 @@ std::unique_ptr<GofParser> AccessUnitParser::make_parser() const {
 }
 
 Result<bool> AccessUnitParser::gof(BitReader& r, std::uint32_t first_frame,
-                                   const ModelSlots& models, std::uint64_t unit_bytes) {
+                                   const RigSlots& rigs, std::uint64_t unit_bytes) {
   const GofHeader header = parse_gof_header(r, context_.header, first_frame);
   if (r.error()) return *r.error();
   kind_ = header.kind;
   num_frames_ = header.num_frames;
   access_unit_.gof_bytes = unit_bytes;
   parser_ = make_parser();
-  return parser_->gof(r, header, models);
+  return parser_->gof(r, header, rigs);
 }
 
 bool AccessUnitParser::drops(BitReader& r) { return parser_->drops(r); }

@@ -8,7 +8,7 @@
 
 #include "common/codec/bits/bit_reader.h"
 #include "common/codec/kinds/access_unit.h"
-#include "common/codec/kinds/skinned/model_slots.h"
+#include "common/codec/kinds/skinned/rig_slots.h"
 #include "common/codec/syntax/stream_context.h"
 #include "common/result.h"
 #include "decoder/codec/parse/memory_limit.h"
@@ -30,9 +30,9 @@ class AccessUnitParser {
 
   // Each `r` covers exactly the payload of a unit; unit_bytes: of the unit with header and CRC.
   //
-  // 6.5 gof( ), once. first_frame: the first frame that the GOF must have. models: the skinned
-  // models alive.
-  Result<bool> gof(BitReader& r, std::uint32_t first_frame, const ModelSlots& models,
+  // 6.5 gof( ), once. first_frame: the first frame that the GOF must have. rigs: the skinned
+  // rigs alive.
+  Result<bool> gof(BitReader& r, std::uint32_t first_frame, const RigSlots& rigs,
                    std::uint64_t unit_bytes);
   // The type of the units that may follow; none: there are no such units.
   std::optional<UnitType> slice_type() const { return rlpc::slice_type(kind_); }
@@ -44,7 +44,7 @@ class AccessUnitParser {
   // 6.7 gof_hash( ), at most once.
   Result<bool> hash(BitReader& r);
 
-  // Estimated memory of what has been parsed so far, and of the skinned models alive; 0 before
+  // Estimated memory of what has been parsed so far, and of the shared rigs alive; 0 before
   // the GOF unit.
   std::uint64_t memory_bytes() const;
   // After the last unit.

@@ -7,7 +7,7 @@
 
 #include "common/codec/components/component_limits.h"
 #include "common/codec/kinds/inter/inter_gof.h"
-#include "common/codec/kinds/skinned/model_slots.h"
+#include "common/codec/kinds/skinned/rig_slots.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "common/codec/syntax/sequence_header.h"
 
@@ -31,7 +31,7 @@ inline std::uint64_t memory_of_coarse_mesh(const SequenceHeader& header) {
   return header.num_vertices * kBytesPerVertex + header.num_triangles * kBytesPerTriangle;
 }
 
-// The parts of a skinned GOF or skinned model, parsed and reconstructed.
+// The parts of a skinned GOF or shared rig, parsed and reconstructed.
 //
 // Spatial factors: per value its residual and its magnitude, the value, and two limbs of it for
 // the sums, in whole tiles.
@@ -59,7 +59,7 @@ constexpr std::uint64_t memory_of_vertices(std::uint64_t num_vertices, bool has_
   constexpr std::uint64_t kBytesPerCounterpart = 64;
   return num_vertices * (kBytesPerVertex + (has_rest_order ? kBytesPerCounterpart : 0));
 }
-// In a GOF of tracks with local component groups: the adaptive weights as the skinned model has
+// In a GOF of tracks with local component groups: the adaptive weights as the shared rig has
 // left them.
 constexpr std::uint64_t memory_of_adaptive_weights(std::uint64_t num_vertices) {
   constexpr std::uint64_t kBytesPerVertex = 130;
@@ -68,7 +68,7 @@ constexpr std::uint64_t memory_of_adaptive_weights(std::uint64_t num_vertices) {
 
 // A GOF of frames: frames without their residuals, and their order; per vertex the position in
 // several frames, neighbours and weights; with learned weights, for each temporal layer, errors
-// and a filter; models of layer groups, for each depth.
+// and a filter; rigs of layer groups, for each depth.
 inline std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t num_frames,
                                       const InterSettings& settings) {
   constexpr std::uint64_t kBytesPerFrame = 160;
@@ -99,17 +99,17 @@ constexpr std::uint64_t memory_of_frame(std::uint64_t num_vertices, std::uint64_
   return 5 * num_vertices + 32 * num_large + sizeof(PatchMotion) * num_patches;
 }
 
-// Skinned models that are kept, with their reconstructions.
-inline std::uint64_t memory_of_model(const SkinnedModel& model) {
-  const std::uint64_t num_vertices = model.influences.size();
-  return memory_of_vertices(num_vertices, model.rest.order_flag) +
-         memory_of_spatial(num_vertices, kRestFactors + model.trajectories.size()) +
-         memory_of_trajectories(model.trajectories.size());
+// Shared rigs that are kept, with their reconstructions.
+inline std::uint64_t memory_of_rig(const SharedRig& rig) {
+  const std::uint64_t num_vertices = rig.influences.size();
+  return memory_of_vertices(num_vertices, rig.rest.order_flag) +
+         memory_of_spatial(num_vertices, kRestFactors + rig.trajectories.size()) +
+         memory_of_trajectories(rig.trajectories.size());
 }
-inline std::uint64_t memory_of_models(const ModelSlots& models) {
+inline std::uint64_t memory_of_rigs(const RigSlots& rigs) {
   std::uint64_t sum = 0;
-  for (const auto& model : models.of_idx) {
-    if (model) sum += memory_of_model(*model);
+  for (const auto& rig : rigs.of_idx) {
+    if (rig) sum += memory_of_rig(*rig);
   }
   return sum;
 }

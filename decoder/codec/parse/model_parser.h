@@ -1,4 +1,4 @@
-// Builds a skinned model from its units, one by one (6.13).
+// Builds a shared rig from its units, one by one (6.13).
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 #include "common/codec/bits/bit_reader.h"
 #include "common/codec/kinds/access_unit.h"
-#include "common/codec/kinds/skinned/model_slots.h"
+#include "common/codec/kinds/skinned/rig_slots.h"
 #include "common/codec/syntax/stream_context.h"
 #include "common/memory/owned.h"
 #include "common/result.h"
@@ -16,25 +16,25 @@
 
 namespace rlpc {
 
-// A skinned model of a stream as parsed: its unit and its slice units.
-struct ParsedModel {
-  std::uint32_t model_idx = 0;
-  std::shared_ptr<const SkinnedModel> model;
+// A shared rig of a stream as parsed: its unit and its slice units.
+struct ParsedRig {
+  std::uint32_t rig_idx = 0;
+  std::shared_ptr<const SharedRig> rig;
   Vector<SliceEntry> slices;  // in the order of the stream
   std::uint64_t bytes = 0;    // size of its unit
 };
 
 // Limits are checked as by AccessUnitParser. After an error it can only be destroyed.
-class ModelParser {
+class RigParser {
  public:
   // The context must outlive it, and have its connectivity set. Slices outside the cut are
   // treated as absent.
-  ModelParser(const StreamContext& context, const MemoryLimit& memory, const SliceCut& cut = {})
+  RigParser(const StreamContext& context, const MemoryLimit& memory, const SliceCut& cut = {})
       : parser_(context.header, *context.meshes, memory, cut) {}
 
-  // As for AccessUnitParser. models: those alive before it.
-  Result<bool> model(BitReader& r, const ModelSlots& models, std::uint64_t unit_bytes) {
-    if (auto ok = parser_.model(r, models); !ok) return ok;
+  // As for AccessUnitParser. rigs: those alive before it.
+  Result<bool> rig(BitReader& r, const RigSlots& rigs, std::uint64_t unit_bytes) {
+    if (auto ok = parser_.rig(r, rigs); !ok) return ok;
     parsed_.bytes = unit_bytes;
     return true;
   }
@@ -49,15 +49,15 @@ class ModelParser {
   // As of AccessUnitParser.
   std::uint64_t memory_bytes() const { return parser_.memory_bytes(); }
   // After the last unit.
-  ParsedModel finish() {
-    parsed_.model_idx = parser_.model_idx();
-    parsed_.model = parser_.finish_model();
+  ParsedRig finish() {
+    parsed_.rig_idx = parser_.rig_idx();
+    parsed_.rig = parser_.finish_rig();
     return std::move(parsed_);
   }
 
  private:
   SkinnedGofParser parser_;
-  ParsedModel parsed_;
+  ParsedRig parsed_;
 };
 
 }  // namespace rlpc

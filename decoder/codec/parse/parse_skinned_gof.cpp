@@ -24,7 +24,7 @@ static_assert(std::all_of(kLevels.begin(), kLevels.end(), [](const Level& level)
 
 }  // namespace
 
-std::uint32_t parse_model_idx(BitReader& r) { return r.u(3, "model_idx"); }
+std::uint32_t parse_rig_idx(BitReader& r) { return r.u(3, "rig_idx"); }
 
 // 6.11 layers_of_rig( )
 void SkinnedGofParser::layers(BitReader& r) {
@@ -123,7 +123,7 @@ void SkinnedGofParser::rig_header(BitReader& r) {
   if (!r.error()) gof_.bones.resize(num_bones);
 }
 
-// The part of a GOF of bones or skinned model that begins with rig_header( ).
+// The part of a GOF of bones or shared rig that begins with rig_header( ).
 Result<bool> SkinnedGofParser::rig(BitReader& r) {
   rig_header(r);
   r.byte_alignment();
@@ -160,46 +160,46 @@ void SkinnedGofParser::start_temporal_layers() {
 
 // 6.11 bones_of_gof( )
 Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header,
-                                     const ModelSlots& models) {
+                                     const RigSlots& rigs) {
   gof_ = {};
   static_cast<GofHeader&>(gof_) = gof_header;
   unit_ = Unit::kGof;
   num_factors_ = 0;
-  memory_bytes_ = memory_of_models(models);
+  memory_bytes_ = memory_of_rigs(rigs);
   if (header_.profile_idc >= kProfileHigh) levels_of_tracks(r);
   return rig(r);
 }
 
-// 6.13 model( )
-Result<bool> SkinnedGofParser::model(BitReader& r, const ModelSlots& models) {
+// 6.13 rig( )
+Result<bool> SkinnedGofParser::rig(BitReader& r, const RigSlots& rigs) {
   gof_ = {};
   gof_.num_frames = 0;
-  unit_ = Unit::kModel;
-  gof_.model_idx = parse_model_idx(r);
-  num_factors_ = models.num_factors(gof_.model_idx);
-  memory_bytes_ = memory_of_models(models);  // with the one that it replaces
+  unit_ = Unit::kRig;
+  gof_.rig_idx = parse_rig_idx(r);
+  num_factors_ = rigs.num_factors(gof_.rig_idx);
+  memory_bytes_ = memory_of_rigs(rigs);  // with the one that it replaces
   return rig(r);
 }
 
 // 6.13.1 tracks_of_gof( )
 Result<bool> SkinnedGofParser::tracks(BitReader& r, const GofHeader& gof_header,
-                                      const ModelSlots& models) {
+                                      const RigSlots& rigs) {
   gof_ = {};
   static_cast<GofHeader&>(gof_) = gof_header;
   unit_ = Unit::kTracks;
   const std::uint64_t at = r.bit_pos();
-  gof_.model_idx = parse_model_idx(r);
-  gof_.model = models.of_idx[gof_.model_idx];
-  if (!r.error() && !gof_.model) r.fail(Errc::kUnsupported, "R-MOD-01", "model_idx", at);
+  gof_.rig_idx = parse_rig_idx(r);
+  gof_.rig = rigs.of_idx[gof_.rig_idx];
+  if (!r.error() && !gof_.rig) r.fail(Errc::kUnsupported, "R-MOD-01", "rig_idx", at);
   if (r.error()) return *r.error();
-  load_model();
+  load_rig();
   levels_of_tracks(r);
   gof_.num_local_groups = r.ue(
       "num_local_groups", {0, kMaxComponentGroups - gof_.num_component_groups}, "R-BON-02");
   r.byte_alignment();
   if (r.error()) return *r.error();
-  num_factors_ = models.num_factors(kMaxModels);
-  memory_bytes_ = memory_of_models(models);
+  num_factors_ = rigs.num_factors(kMaxRigs);
+  memory_bytes_ = memory_of_rigs(rigs);
   track_section(r);
   if (r.error()) return *r.error();
 
@@ -207,36 +207,36 @@ Result<bool> SkinnedGofParser::tracks(BitReader& r, const GofHeader& gof_header,
   const std::uint32_t num_groups = gof_.num_component_groups + gof_.num_local_groups;
   state_.start(gof_.num_frames, gof_.num_component_groups + 1);
   gof_.slice_layers.assign(std::size_t{num_groups} + 1, 0);
-  gof_.slice_layers[0] = gof_.model->slice_layers[0];
+  gof_.slice_layers[0] = gof_.rig->slice_layers[0];
   start_temporal_layers();
   gof_.vertex_residual.emplace_back();
-  // Groups that the cut leaves of the skinned model; of a complete one, local groups follow.
-  const bool is_complete = gof_.model->group_end.size() == gof_.num_component_groups + 1;
+  // Groups that the cut leaves of the shared rig; of a complete one, local groups follow.
+  const bool is_complete = gof_.rig->group_end.size() == gof_.num_component_groups + 1;
   kept_.end_component_group = cut_.max_components == SliceCut::kAll || is_complete
                                   ? num_groups + 1
-                                  : static_cast<std::uint32_t>(gof_.model->group_end.size());
+                                  : static_cast<std::uint32_t>(gof_.rig->group_end.size());
   kept_.end_layer_group = layer_groups_that_stay(gof_.layer_group_size, cut_);
   return true;
 }
 
-// 8.16.2 LoadModel( )
-void SkinnedGofParser::load_model() {
-  const SkinnedModel& model = *gof_.model;
-  gof_.fraction_bits = model.fraction_bits;
-  gof_.weight_bits = model.weight_bits;
-  gof_.prediction = model.prediction;
-  gof_.weights = model.weights;
-  gof_.layer_group_size = model.layer_group_size;
-  gof_.layer_step = model.layer_step;
-  gof_.bones = model.bones;
-  gof_.num_component_groups = model.num_component_groups;
-  gof_.group_end = {model.group_end.back()};
-  gof_.is_cut = model.is_cut;
+// 8.16.2 LoadRig( )
+void SkinnedGofParser::load_rig() {
+  const SharedRig& rig = *gof_.rig;
+  gof_.fraction_bits = rig.fraction_bits;
+  gof_.weight_bits = rig.weight_bits;
+  gof_.prediction = rig.prediction;
+  gof_.weights = rig.weights;
+  gof_.layer_group_size = rig.layer_group_size;
+  gof_.layer_step = rig.layer_step;
+  gof_.bones = rig.bones;
+  gof_.num_component_groups = rig.num_component_groups;
+  gof_.group_end = {rig.group_end.back()};
+  gof_.is_cut = rig.is_cut;
   mesh_ = &meshes_[gof_.prediction];
 }
 
-std::shared_ptr<const SkinnedModel> SkinnedGofParser::finish_model() {
-  return make_shared_owned<SkinnedModel>(std::move(static_cast<SkinnedModel&>(gof_)));
+std::shared_ptr<const SharedRig> SkinnedGofParser::finish_rig() {
+  return make_shared_owned<SharedRig>(std::move(static_cast<SharedRig&>(gof_)));
 }
 
 // 8.14.1 MayFollow( group, index )
@@ -251,7 +251,7 @@ bool SkinnedGofParser::may_follow(const SliceEntry& slice) const {
   }
   if (group < state_.last_group || layers != gof_.slice_layers[group]) return false;
   if (has_only_tracks(group) &&
-      (group == 0 || layers > 0 || gof_.model->slice_layers[group] == 0)) {
+      (group == 0 || layers > 0 || gof_.rig->slice_layers[group] == 0)) {
     return false;
   }
   return group == 0 || gof_.slice_layers[group - 1] > layers;

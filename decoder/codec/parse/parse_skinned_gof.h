@@ -1,4 +1,4 @@
-// 6.11 to 6.13: skinned GOFs, skinned models and their slices, parsing side.
+// 6.11 to 6.13: skinned GOFs, shared rigs and their slices, parsing side.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 #include "common/codec/bits/bit_reader.h"
 #include "common/codec/kinds/access_unit.h"
-#include "common/codec/kinds/skinned/model_slots.h"
+#include "common/codec/kinds/skinned/rig_slots.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "common/codec/kinds/skinned/slice_models.h"
 #include "common/codec/mesh/ordered_meshes.h"
@@ -22,10 +22,10 @@ namespace rlpc {
 
 class SectionReader;
 
-// Of a skinned model unit, or of a GOF of tracks.
-std::uint32_t parse_model_idx(BitReader& r);
+// Of a rig unit, or of a GOF of tracks.
+std::uint32_t parse_rig_idx(BitReader& r);
 
-// The unit of a skinned GOF or skinned model and the slice units after it, one by one. Every
+// The unit of a skinned GOF or shared rig and the slice units after it, one by one. Every
 // size is checked against the level, and the memory it needs against the limit, before
 // anything is allocated. Slices outside the cut are treated as absent.
 class SkinnedGofParser {
@@ -39,39 +39,39 @@ class SkinnedGofParser {
   // those alive.
   //
   // 6.11 bones_of_gof( )
-  Result<bool> bones(BitReader& r, const GofHeader& gof_header, const ModelSlots& models = {});
+  Result<bool> bones(BitReader& r, const GofHeader& gof_header, const RigSlots& rigs = {});
   // 6.13.1 tracks_of_gof( )
-  Result<bool> tracks(BitReader& r, const GofHeader& gof_header, const ModelSlots& models);
-  // 6.13 model( )
-  Result<bool> model(BitReader& r, const ModelSlots& models);
+  Result<bool> tracks(BitReader& r, const GofHeader& gof_header, const RigSlots& rigs);
+  // 6.13 rig( )
+  Result<bool> rig(BitReader& r, const RigSlots& rigs);
 
   // Whether the cut drops the slice whose unit begins with `r`, which then need not be parsed.
   bool drops(BitReader& r);
   // 6.12 slice_unit( ). unit_bit_pos: of the slice unit.
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos);
 
-  // After the last slice, of a GOF or of a skinned model.
+  // After the last slice, of a GOF or of a shared rig.
   SkinnedGof finish() { return std::move(gof_); }
-  std::shared_ptr<const SkinnedModel> finish_model();
-  std::uint32_t model_idx() const { return gof_.model_idx; }
+  std::shared_ptr<const SharedRig> finish_rig();
+  std::uint32_t rig_idx() const { return gof_.rig_idx; }
 
   // The slice that the last slice() parsed; none if the cut drops it.
   const std::optional<SliceEntry>& last_slice() const { return last_slice_; }
   // Whether a slice has been dropped so far.
   bool is_cut() const { return gof_.is_cut; }
-  // Estimated memory of what has been parsed so far, and of the skinned models alive.
+  // Estimated memory of what has been parsed so far, and of the shared rigs alive.
   std::uint64_t memory_bytes() const { return memory_bytes_; }
 
  private:
   class SliceParser;
-  enum class Unit : std::uint8_t { kGof, kModel, kTracks };
+  enum class Unit : std::uint8_t { kGof, kRig, kTracks };
 
   Result<bool> rig(BitReader& r);
   void rig_header(BitReader& r);
   void levels_of_tracks(BitReader& r);
   void start_temporal_layers();
   void layers(BitReader& r);
-  void load_model();
+  void load_rig();
   void bone_section(BitReader& r);
   void track_section(BitReader& r);
   // Before a section is parsed that adds to them: counts spatial factors of all vertices,
@@ -84,13 +84,13 @@ class SkinnedGofParser {
     return 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames;
   }
   void count_factors(SectionReader& section, const Factors& factors, const char* element);
-  // Whether slices of the group have tracks and no vertices: those are in the skinned model.
+  // Whether slices of the group have tracks and no vertices: those are in the shared rig.
   bool has_only_tracks(std::uint32_t group) const {
     return unit_ == Unit::kTracks && group <= gof_.num_component_groups;
   }
-  // The trajectories of a component group of the GOF or of its skinned model, from 1 on.
+  // The trajectories of a component group of the GOF or of its shared rig, from 1 on.
   FactorGroup tracks_of(std::uint32_t group) const {
-    return has_only_tracks(group) ? factor_group(*gof_.model, group)
+    return has_only_tracks(group) ? factor_group(*gof_.rig, group)
                                   : factor_group(gof_, own_group(group));
   }
   // Index of a component group among those that have vertices here.
@@ -107,7 +107,7 @@ class SkinnedGofParser {
   SliceCut cut_;
   const OrderedMesh* mesh_ = nullptr;
   Unit unit_ = Unit::kGof;
-  SkinnedGof gof_;  // or skinned model
+  SkinnedGof gof_;  // or shared rig
   std::uint64_t num_factors_ = 0;
   std::uint64_t memory_bytes_ = 0;
   // From slice to slice (9.8.1).

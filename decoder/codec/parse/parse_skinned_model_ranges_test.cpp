@@ -1,5 +1,5 @@
 // The elements of 6.13 up to the ends of their ranges, and beyond; and NumFactors with skinned
-// models.
+// rigs.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -28,17 +28,17 @@ class Units {
         meshes_(topology_, {}),
         parser_(header_, meshes_, {max_memory_bytes, 0}) {}
 
-  Result<bool> model(const SkinnedGofRecipe& recipe, std::uint32_t model_idx) {
-    const Bytes payload = recipe.model_payload(model_idx);
+  Result<bool> rig(const SkinnedGofRecipe& recipe, std::uint32_t rig_idx) {
+    const Bytes payload = recipe.rig_payload(rig_idx);
     BitReader r(payload);
-    return parser_.model(r, models);
+    return parser_.rig(r, rigs);
   }
   Result<bool> gof(const Bytes& payload) {
     BitReader r(payload);
     const GofHeader header = parse_gof_header(r, header_, 0);
     if (r.error()) return *r.error();
-    return header.kind == GofKind::kSharedRig ? parser_.tracks(r, header, models)
-                                              : parser_.bones(r, header, models);
+    return header.kind == GofKind::kSharedRig ? parser_.tracks(r, header, rigs)
+                                              : parser_.bones(r, header, rigs);
   }
   Result<bool> slice(SliceRecipe& recipe) {
     const Bytes payload = recipe.payload();
@@ -55,7 +55,7 @@ class Units {
     add_residuals(slice, kRestFactors);
     return this->slice(slice);
   }
-  // Of component group 1 of a skinned model.
+  // Of component group 1 of a shared rig.
   Result<bool> group(const std::vector<std::int32_t>& spatial_bits_deltas) {
     SliceRecipe slice(1, 0);
     slice.num_group_components_minus1(static_cast<std::int32_t>(spatial_bits_deltas.size()) -
@@ -64,10 +64,10 @@ class Units {
     add_residuals(slice, spatial_bits_deltas.size());
     return this->slice(slice);
   }
-  void keep() { models.of_idx[parser_.model_idx()] = parser_.finish_model(); }
+  void keep() { rigs.of_idx[parser_.rig_idx()] = parser_.finish_rig(); }
   SkinnedGofParser& parser() { return parser_; }
 
-  ModelSlots models;
+  RigSlots rigs;
 
  private:
   SequenceHeader header_;
@@ -77,11 +77,11 @@ class Units {
 };
 
 // Counts as this many factors, in steps of the number of vertices.
-std::shared_ptr<SkinnedModel> model_of(std::uint32_t num_vertices, std::size_t factors) {
-  auto model = std::make_shared<SkinnedModel>();
-  model->influences.resize(num_vertices);
-  model->trajectories.resize(factors - kRestFactors);
-  return model;
+std::shared_ptr<SharedRig> rig_of(std::uint32_t num_vertices, std::size_t factors) {
+  auto rig = std::make_shared<SharedRig>();
+  rig->influences.resize(num_vertices);
+  rig->trajectories.resize(factors - kRestFactors);
+  return rig;
 }
 
 Bytes gof_of_bones() {
@@ -90,72 +90,72 @@ Bytes gof_of_bones() {
   return recipe.payload();
 }
 
-TEST(ParseModelRanges, ModelsHaveEightIndices) {
-  for (std::uint32_t idx = 0; idx < kMaxModels; ++idx) {
+TEST(ParseRigRanges, RigsHaveEightIndices) {
+  for (std::uint32_t idx = 0; idx < kMaxRigs; ++idx) {
     Units units(2);
-    ASSERT_TRUE(units.model({}, idx));
-    EXPECT_EQ(units.parser().model_idx(), idx);
+    ASSERT_TRUE(units.rig({}, idx));
+    EXPECT_EQ(units.parser().rig_idx(), idx);
     units.keep();
-    for (std::uint32_t other = 0; other < kMaxModels; ++other) {
+    for (std::uint32_t other = 0; other < kMaxRigs; ++other) {
       const auto parsed = units.gof(SkinnedGofRecipe().tracks_payload(2, other, 0));
       EXPECT_EQ(static_cast<bool>(parsed), other == idx);
       if (parsed) continue;
       EXPECT_EQ(parsed.error().code, Errc::kUnsupported);
       EXPECT_STREQ(parsed.error().rule, "R-MOD-01");
-      EXPECT_STREQ(parsed.error().element, "model_idx");
+      EXPECT_STREQ(parsed.error().element, "rig_idx");
     }
   }
 }
 
-TEST(ParseModelRanges, TheHeaderIsThatOfAGof) {
+TEST(ParseRigRanges, TheHeaderIsThatOfAGof) {
   SkinnedGofRecipe recipe;
   recipe.bones.resize(257);
-  expect_invalid(Units(2).model(recipe, 0), "R-LVL-06", "num_bones_minus1");
+  expect_invalid(Units(2).rig(recipe, 0), "R-LVL-06", "num_bones_minus1");
   recipe = {};
   recipe.rest_step_minus1 = 65536;
-  expect_invalid(Units(2).model(recipe, 0), "R-BON-01", "rest_step_minus1");
+  expect_invalid(Units(2).rig(recipe, 0), "R-BON-01", "rest_step_minus1");
   recipe = {};
   recipe.num_component_groups = 256;
-  expect_invalid(Units(2).model(recipe, 0), "R-BON-02", "num_component_groups");
+  expect_invalid(Units(2).rig(recipe, 0), "R-BON-02", "num_component_groups");
 }
 
 // 16384 vertices, and 2^21 values at level 1.
-TEST(ParseModelRanges, AdaptiveValuesAreBoundedByTheLevel) {
+TEST(ParseRigRanges, AdaptiveValuesAreBoundedByTheLevel) {
   for (const std::uint32_t adaptive : {0U, 128U, 129U, 512U}) {
     SkinnedGofRecipe recipe;
     recipe.prediction_idc = 3;
     recipe.layer_step_minus1 = {15};
     recipe.num_adaptive_factors = adaptive;
-    const auto model = Units(16384).model(recipe, 0);
+    const auto rig = Units(16384).rig(recipe, 0);
     const auto gof = Units(16384).gof(recipe.payload());
     if (adaptive <= 128) {
-      EXPECT_TRUE(model && gof);
+      EXPECT_TRUE(rig && gof);
     } else {
-      expect_invalid(model, "R-LVL-09", "num_adaptive_factors");
+      expect_invalid(rig, "R-LVL-09", "num_adaptive_factors");
       expect_invalid(gof, "R-LVL-09", "num_adaptive_factors");
     }
   }
 }
 
-TEST(ParseModelRanges, LocalGroupsAreWithinWhatTheModelLeaves) {
-  for (const std::uint32_t of_model : {0U, 1U, 254U, 255U}) {
+TEST(ParseRigRanges, LocalGroupsAreWithinWhatTheRigLeaves) {
+  for (const std::uint32_t of_rig : {0U, 1U, 254U, 255U}) {
     Units units(2);
     SkinnedGofRecipe recipe;
-    recipe.num_component_groups = of_model;
-    ASSERT_TRUE(units.model(recipe, 3));
+    recipe.num_component_groups = of_rig;
+    ASSERT_TRUE(units.rig(recipe, 3));
     units.keep();
-    EXPECT_TRUE(units.gof(recipe.tracks_payload(2, 3, 255 - of_model)));
-    expect_invalid(units.gof(recipe.tracks_payload(2, 3, 256 - of_model)), "R-BON-02",
+    EXPECT_TRUE(units.gof(recipe.tracks_payload(2, 3, 255 - of_rig)));
+    expect_invalid(units.gof(recipe.tracks_payload(2, 3, 256 - of_rig)), "R-BON-02",
                    "num_local_groups");
   }
 }
 
-TEST(ParseModelRanges, SpatialBitsAreWithinTheirRange) {
+TEST(ParseRigRanges, SpatialBitsAreWithinTheirRange) {
   const auto parse = [](std::int32_t first, std::int32_t second) {
     Units units(2);
     SkinnedGofRecipe recipe;
     recipe.num_component_groups = 1;
-    EXPECT_TRUE(units.model(recipe, 0));
+    EXPECT_TRUE(units.rig(recipe, 0));
     EXPECT_TRUE(units.rest());
     return units.group({first, second});
   };
@@ -167,14 +167,14 @@ TEST(ParseModelRanges, SpatialBitsAreWithinTheirRange) {
   expect_invalid(parse(1, -2), "R-GOF-11", "spatial_bits_delta");
 }
 
-// A model of one component group, of `count` trajectories, and a GOF that uses it.
+// A rig of one component group, of `count` trajectories, and a GOF that uses it.
 class Tracks {
  public:
   explicit Tracks(std::size_t count, std::uint32_t local_groups = 0) : units_(2, 3) {
     SkinnedGofRecipe recipe;
     recipe.num_component_groups = 1;
     recipe.num_gof_frames_minus1 = 2;
-    EXPECT_TRUE(units_.model(recipe, 0));
+    EXPECT_TRUE(units_.rig(recipe, 0));
     EXPECT_TRUE(units_.rest());
     EXPECT_TRUE(units_.group(std::vector<std::int32_t>(count, 0)));
     units_.keep();
@@ -227,8 +227,8 @@ TEST(ParseTracksRanges, StillTrajectoriesHaveNothingElse) {
   EXPECT_EQ(gof.trajectories[1].temporal_bits, 7);
 }
 
-// 7.13.2: one slice for each component group of the model, and none for its rest positions.
-TEST(ParseTracksRanges, SlicesAreThoseOfTheModel) {
+// 7.13.2: one slice for each component group of the rig, and none for its rest positions.
+TEST(ParseTracksRanges, SlicesAreThoseOfTheRig) {
   const auto parse = [](std::uint32_t group, std::uint32_t layers) {
     Tracks tracks(1, 1);
     SliceRecipe slice(group, layers);
@@ -242,7 +242,7 @@ TEST(ParseTracksRanges, SlicesAreThoseOfTheModel) {
   expect_invalid(parse(3, 0), "R-SLI-01", "component_group_idx");
 }
 
-// 512 trajectories at level 1, with those of the model.
+// 512 trajectories at level 1, with those of the rig.
 TEST(ParseTracksRanges, TrajectoriesOfBothAreBoundedByTheLevel) {
   const auto parse = [](std::int32_t local) {
     Tracks tracks(510, 1);
@@ -250,8 +250,8 @@ TEST(ParseTracksRanges, TrajectoriesOfBothAreBoundedByTheLevel) {
     for (int l = 0; l < 510; ++l) slice.trajectory_flag(false);
     EXPECT_TRUE(tracks.slice(slice));
     SliceRecipe own(2, 0);
-    // Not the first slice with such elements: the models go on.
-    own.models = slice.models;
+    // Not the first slice with such elements: the rigs go on.
+    own.rigs = slice.rigs;
     own.num_group_components_minus1(local - 1);
     for (std::int32_t l = 0; l < local; ++l) own.trajectory(0, 0, 0, 0, 0, 3);
     tracks.add_residuals(own, static_cast<std::size_t>(local));
@@ -261,36 +261,36 @@ TEST(ParseTracksRanges, TrajectoriesOfBothAreBoundedByTheLevel) {
   expect_invalid(parse(3), "R-SLI-03", "num_group_components_minus1");
 }
 
-// 2^23 factors at level 1, which are 512 for each of 16384 vertices. All models count together:
-// for a model, those that it does not replace; for a GOF that uses one, all.
-TEST(ParseModelRanges, FactorsOfAllModelsAreBoundedByTheLevel) {
+// 2^23 factors at level 1, which are 512 for each of 16384 vertices. All rigs count together:
+// for a rig, those that it does not replace; for a GOF that uses one, all.
+TEST(ParseRigRanges, FactorsOfAllRigsAreBoundedByTheLevel) {
   constexpr std::uint32_t kVertices = 16384;
   for (const std::size_t others : {509U, 510U}) {
     Units units(kVertices);
-    units.models.of_idx[2] = model_of(kVertices, others - 3);
-    units.models.of_idx[6] = model_of(kVertices, 3);
-    const auto added = units.model({}, 0);
+    units.rigs.of_idx[2] = rig_of(kVertices, others - 3);
+    units.rigs.of_idx[6] = rig_of(kVertices, 3);
+    const auto added = units.rig({}, 0);
     if (others == 509) {
       EXPECT_TRUE(added);
     } else {
       expect_invalid(added, "R-LVL-05", "bone_section");
     }
-    EXPECT_TRUE(units.model({}, 2));  // replaces one
+    EXPECT_TRUE(units.rig({}, 2));  // replaces one
     EXPECT_TRUE(units.gof(gof_of_bones()));
   }
 }
 
-TEST(ParseModelRanges, FactorsOfGofsWithModelsAreBoundedByTheLevel) {
+TEST(ParseRigRanges, FactorsOfGofsWithRigsAreBoundedByTheLevel) {
   constexpr std::uint32_t kVertices = 16384;
   for (const std::size_t factors : {511U, 512U}) {
     Units units(kVertices);
     SkinnedGofRecipe recipe;
     recipe.num_component_groups = 1;
-    ASSERT_TRUE(units.model(recipe, 0));
+    ASSERT_TRUE(units.rig(recipe, 0));
     ASSERT_TRUE(units.rest());
     ASSERT_TRUE(units.group({0}));
     units.keep();
-    units.models.of_idx[1] = model_of(kVertices, factors - 4);
+    units.rigs.of_idx[1] = rig_of(kVertices, factors - 4);
     const auto gof = units.gof(recipe.tracks_payload(2, 0, 1));
     if (factors == 512) {
       expect_invalid(gof, "R-LVL-05", "track_section");
@@ -302,30 +302,30 @@ TEST(ParseModelRanges, FactorsOfGofsWithModelsAreBoundedByTheLevel) {
     ASSERT_TRUE(units.slice(tracks));
     // A factor for each vertex is left, less 6 for the bone and 3 for each trajectory.
     SliceRecipe local(2, 0);
-    local.models = tracks.models;
+    local.rigs = tracks.rigs;
     local.num_group_components_minus1(0);
     expect_invalid(units.slice(local), "R-LVL-05", "num_group_components_minus1");
   }
 }
 
 // Tracks are counted, too: 3 for each frame.
-TEST(ParseModelRanges, FactorsOfTracksAreBoundedByTheLevel) {
+TEST(ParseRigRanges, FactorsOfTracksAreBoundedByTheLevel) {
   constexpr std::uint32_t kVertices = 8000;
   for (const std::size_t left : {3U * 512, 3U * 512 - 1}) {
     Units units(kVertices, 512);
     SkinnedGofRecipe recipe;
     recipe.num_component_groups = 1;
     recipe.num_gof_frames_minus1 = 511;
-    ASSERT_TRUE(units.model(recipe, 0));
+    ASSERT_TRUE(units.rig(recipe, 0));
     ASSERT_TRUE(units.rest());
     ASSERT_TRUE(units.group({0}));
     units.keep();
-    // What the other model leaves: 4 factors of this one, the bone, and `left`.
+    // What the other rig leaves: 4 factors of this one, the bone, and `left`.
     const std::uint64_t others = (1U << 23) - 4 * kVertices - 6 * 512 - left;
-    auto other = model_of(1, 3);
+    auto other = rig_of(1, 3);
     other->influences.resize(1);
     other->trajectories.resize(others - kRestFactors);
-    units.models.of_idx[1] = other;
+    units.rigs.of_idx[1] = other;
     ASSERT_TRUE(units.gof(recipe.tracks_payload(2, 0, 0)));
     SliceRecipe tracks(1, 0);
     tracks.trajectory_flag(false);
@@ -338,16 +338,16 @@ TEST(ParseModelRanges, FactorsOfTracksAreBoundedByTheLevel) {
   }
 }
 
-// Of the unit itself, of what is made of it, and of other skinned models; also of the one that
-// a skinned model replaces, which is kept meanwhile.
-TEST(ParseModelRanges, ModelsStayWithinTheMemoryOfTheCaller) {
-  const Memory kept = memory_of_model(*model_of(5, 4));
+// Of the unit itself, of what is made of it, and of other shared rigs; also of the one that
+// a shared rig replaces, which is kept meanwhile.
+TEST(ParseRigRanges, RigsStayWithinTheMemoryOfTheCaller) {
+  const Memory kept = memory_of_rig(*rig_of(5, 4));
   const Memory own = memory_of_vertices(5, false) + memory_of_spatial(5, 3);
   for (const std::size_t kept_idx : {7U, 0U}) {
     const auto parse = [&](Memory most) {
       Units units(5, 1, most);
-      units.models.of_idx[kept_idx] = model_of(5, 4);
-      return units.model({}, 0);
+      units.rigs.of_idx[kept_idx] = rig_of(5, 4);
+      return units.rig({}, 0);
     };
     const auto too_little = parse(kept + own);
     ASSERT_FALSE(too_little);
@@ -355,17 +355,17 @@ TEST(ParseModelRanges, ModelsStayWithinTheMemoryOfTheCaller) {
     EXPECT_STREQ(too_little.error().element, "bone_section");
     const Memory needed = too_little.error().needed_bytes;
     EXPECT_GT(needed, kept + own);
-    EXPECT_LT(needed, kept + own + SkinnedGofRecipe().model_payload(0).size());
+    EXPECT_LT(needed, kept + own + SkinnedGofRecipe().rig_payload(0).size());
     EXPECT_TRUE(parse(needed));
     EXPECT_FALSE(parse(needed - 1));
   }
 }
 
 // Those of a GOF of bones; of a GOF of tracks, without and with local component groups.
-TEST(ParseModelRanges, GofsStayWithinTheMemoryOfTheCaller) {
-  const auto model = model_of(5, 4);
-  model->bones.resize(1);
-  const Memory kept = memory_of_model(*model);
+TEST(ParseRigRanges, GofsStayWithinTheMemoryOfTheCaller) {
+  const auto rig = rig_of(5, 4);
+  rig->bones.resize(1);
+  const Memory kept = memory_of_rig(*rig);
   const Memory of_vertices = memory_of_vertices(5, false) + memory_of_spatial(5, 3);
   const SkinnedGofRecipe recipe;
   const std::pair<Bytes, Memory> gofs[] = {
@@ -375,7 +375,7 @@ TEST(ParseModelRanges, GofsStayWithinTheMemoryOfTheCaller) {
        kept + memory_of_tracks(6) + memory_of_adaptive_weights(5)}};
   for (const auto& [payload, bytes] : gofs) {
     Units units(5, 1, 0);
-    units.models.of_idx[7] = model;
+    units.rigs.of_idx[7] = rig;
     const auto parsed = units.gof(payload);
     ASSERT_FALSE(parsed);
     EXPECT_EQ(parsed.error().code, Errc::kLimitExceeded);

@@ -34,7 +34,7 @@ void SkinnedGofParser::SliceParser::group_components() {
   for (int l = 0; l < count && !failed(); ++l) {
     Trajectory& next = gof_.trajectories.emplace_back();
     Trajectory& before = state_.previous;
-    if (parser_.unit_ == Unit::kModel) {
+    if (parser_.unit_ == Unit::kRig) {
       next.spatial_bits = parse_header_field(
           section_, models.header, models.header_mean, HeaderField::kSpatialBits,
           before.spatial_bits, {1, kMaxSpatialBits}, "spatial_bits_delta", "R-GOF-11");
@@ -49,7 +49,7 @@ void SkinnedGofParser::SliceParser::group_components() {
   }
 }
 
-// Of `count` trajectories; spatial: their spatial factors, 0 if they are in the skinned model.
+// Of `count` trajectories; spatial: their spatial factors, 0 if they are in the shared rig.
 void SkinnedGofParser::SliceParser::count_factors(std::uint64_t count, std::uint64_t spatial,
                                                   const char* element) {
   parser_.memory_bytes_ += memory_of_trajectories(count);
@@ -58,12 +58,12 @@ void SkinnedGofParser::SliceParser::count_factors(std::uint64_t count, std::uint
 
 // 6.13.2 tracks_of_group( )
 void SkinnedGofParser::SliceParser::tracks_of_group() {
-  const FactorGroup factors = factor_group(*gof_.model, group_);
+  const FactorGroup factors = factor_group(*gof_.rig, group_);
   count_factors(factors.size(), 0, "trajectory_flag");
   SliceModels& models = state_.models;
   for (std::size_t l = factors.first; l < factors.end && !failed(); ++l) {
     Trajectory& next = gof_.trajectories.emplace_back();
-    next.spatial_bits = gof_.model->trajectories[l - kRestFactors].spatial_bits;
+    next.spatial_bits = gof_.rig->trajectories[l - kRestFactors].spatial_bits;
     next.trajectory_flag = section_.bin(models.trajectory_flag, "trajectory_flag");
     if (next.trajectory_flag) {
       next.scale_idx = parse_header_field(section_, models.header, models.header_mean,
@@ -202,7 +202,7 @@ void SkinnedGofParser::SliceParser::parse() {
   if (parser_.has_only_tracks(group_)) {
     tracks_of_group();
     section_.finish();
-    gof_.slice_layers[group_] = gof_.model->slice_layers[group_];  // 8.16.2 EndTracks( )
+    gof_.slice_layers[group_] = gof_.rig->slice_layers[group_];  // 8.16.2 EndTracks( )
     state_.last_group = group_;
     return;
   }

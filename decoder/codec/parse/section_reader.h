@@ -70,7 +70,7 @@ class SectionReader {
     trace(element, value, at);
     return value;
   }
-  // The same for each of `values`: models_of() gives the models of the next one, expected_of()
+  // The same for each of `values`: rigs_of() gives the models of the next one, expected_of()
   // its expected magnitude, and update() takes the value. The state of the range decoder stays
   // in registers unless there is a trace.
   template <class Context>

@@ -20,16 +20,16 @@ Result<bool> AccessUnitReader::is_dropped(const UnitHeader& unit, Parser& parser
 }
 
 Result<AccessUnit> AccessUnitReader::read(const UnitHeader& gof_unit, std::uint32_t first_frame,
-                                          const ModelSlots& models) {
+                                          const RigSlots& rigs) {
   AccessUnitParser parser(context_, memory_limit(), cut_);
-  const std::uint64_t of_models = memory_of_models(models);
+  const std::uint64_t of_rigs = memory_of_rigs(rigs);
   for (std::optional<UnitHeader> unit = gof_unit; unit;) {
     const auto dropped = is_dropped(*unit, parser);
     if (!dropped) return dropped.error();
     if (!*dropped) {
-      const auto bytes = payload(*unit, std::max(of_models, parser.memory_bytes()));
+      const auto bytes = payload(*unit, std::max(of_rigs, parser.memory_bytes()));
       if (!bytes) return bytes.error();
-      if (auto ok = parse_unit(parser, *unit, *bytes, first_frame, models); !ok) {
+      if (auto ok = parse_unit(parser, *unit, *bytes, first_frame, rigs); !ok) {
         return ok.error();
       }
     }
@@ -64,16 +64,16 @@ std::optional<RawAccessUnit> AccessUnitReader::collect(const UnitHeader& gof_uni
   return coded;
 }
 
-Result<AccessUnit> AccessUnitReader::parse(const RawAccessUnit& coded, const ModelSlots& models,
+Result<AccessUnit> AccessUnitReader::parse(const RawAccessUnit& coded, const RigSlots& rigs,
                                            const SliceCut& cut,
                                            std::uint64_t max_memory_bytes) const {
   const MemoryLimit memory = limit_ahead(max_memory_bytes);
-  const std::uint64_t of_models = memory_of_models(models);
+  const std::uint64_t of_rigs = memory_of_rigs(rigs);
   AccessUnitParser parser(context_, memory, cut);
   for (const auto& [unit, payload] : coded.units) {
-    const std::uint64_t taken_bytes = std::max(of_models, parser.memory_bytes());
+    const std::uint64_t taken_bytes = std::max(of_rigs, parser.memory_bytes());
     if (auto ok = check_fits(unit, taken_bytes, memory); !ok) return ok.error();
-    if (auto ok = parse_unit(parser, unit, payload, coded.gof.first_frame, models); !ok)
+    if (auto ok = parse_unit(parser, unit, payload, coded.gof.first_frame, rigs); !ok)
       return ok.error();
   }
   return parser.finish();
@@ -102,12 +102,12 @@ Result<Vector<std::uint8_t>> AccessUnitReader::payload(const UnitHeader& unit,
 Result<bool> AccessUnitReader::parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
                                           const Vector<std::uint8_t>& payload,
                                           std::uint32_t first_frame,
-                                          const ModelSlots& models) const {
+                                          const RigSlots& rigs) const {
   BitReader r = units_.bits(unit, payload);
   const std::uint64_t unit_bytes = unit.end() - unit.offset;
   switch (unit.type()) {
     case UnitType::kGof:
-      return parser.gof(r, first_frame, models, unit_bytes);
+      return parser.gof(r, first_frame, rigs, unit_bytes);
     case UnitType::kSlice:
     case UnitType::kFrame:
       return parser.slice(r, unit.offset * 8, unit_bytes);
@@ -116,17 +116,17 @@ Result<bool> AccessUnitReader::parse_unit(AccessUnitParser& parser, const UnitHe
   }
 }
 
-Result<ParsedModel> AccessUnitReader::read_model(const UnitHeader& model_unit,
-                                                 const ModelSlots& models) {
-  ModelParser parser(context_, memory_limit(), cut_);
-  const std::uint64_t of_models = memory_of_models(models);
-  for (std::optional<UnitHeader> unit = model_unit; unit;) {
+Result<ParsedRig> AccessUnitReader::read_rig(const UnitHeader& rig_unit,
+                                                 const RigSlots& rigs) {
+  RigParser parser(context_, memory_limit(), cut_);
+  const std::uint64_t of_rigs = memory_of_rigs(rigs);
+  for (std::optional<UnitHeader> unit = rig_unit; unit;) {
     const auto dropped = is_dropped(*unit, parser);
     if (!dropped) return dropped.error();
     if (!*dropped) {
-      const auto bytes = payload(*unit, std::max(of_models, parser.memory_bytes()));
+      const auto bytes = payload(*unit, std::max(of_rigs, parser.memory_bytes()));
       if (!bytes) return bytes.error();
-      if (auto ok = parse_unit(parser, *unit, *bytes, models); !ok) return ok.error();
+      if (auto ok = parse_unit(parser, *unit, *bytes, rigs); !ok) return ok.error();
     }
     end_ = unit->end();
     const auto next = slice_after(*unit);
@@ -136,11 +136,11 @@ Result<ParsedModel> AccessUnitReader::read_model(const UnitHeader& model_unit,
   return parser.finish();
 }
 
-std::optional<Vector<RawUnit>> AccessUnitReader::collect_model(const UnitHeader& model_unit,
+std::optional<Vector<RawUnit>> AccessUnitReader::collect_rig(const UnitHeader& rig_unit,
                                                                std::uint64_t max_memory_bytes) {
   Vector<RawUnit> coded;
   std::uint64_t num_bytes = 0;
-  for (std::optional<UnitHeader> unit = model_unit; unit;) {
+  for (std::optional<UnitHeader> unit = rig_unit; unit;) {
     num_bytes += unit->size;
     if (num_bytes > max_memory_bytes) return std::nullopt;
     auto payload = units_.payload(*unit);
@@ -153,26 +153,26 @@ std::optional<Vector<RawUnit>> AccessUnitReader::collect_model(const UnitHeader&
   return coded;
 }
 
-Result<ParsedModel> AccessUnitReader::parse_model(const Vector<RawUnit>& coded,
-                                                  const ModelSlots& models, const SliceCut& cut,
+Result<ParsedRig> AccessUnitReader::parse_rig(const Vector<RawUnit>& coded,
+                                                  const RigSlots& rigs, const SliceCut& cut,
                                                   std::uint64_t max_memory_bytes) const {
   const MemoryLimit memory = limit_ahead(max_memory_bytes);
-  const std::uint64_t of_models = memory_of_models(models);
-  ModelParser parser(context_, memory, cut);
+  const std::uint64_t of_rigs = memory_of_rigs(rigs);
+  RigParser parser(context_, memory, cut);
   for (const auto& [unit, payload] : coded) {
-    const std::uint64_t taken_bytes = std::max(of_models, parser.memory_bytes());
+    const std::uint64_t taken_bytes = std::max(of_rigs, parser.memory_bytes());
     if (auto ok = check_fits(unit, taken_bytes, memory); !ok) return ok.error();
-    if (auto ok = parse_unit(parser, unit, payload, models); !ok) return ok.error();
+    if (auto ok = parse_unit(parser, unit, payload, rigs); !ok) return ok.error();
   }
   return parser.finish();
 }
 
-Result<bool> AccessUnitReader::parse_unit(ModelParser& parser, const UnitHeader& unit,
+Result<bool> AccessUnitReader::parse_unit(RigParser& parser, const UnitHeader& unit,
                                           const Vector<std::uint8_t>& payload,
-                                          const ModelSlots& models) const {
+                                          const RigSlots& rigs) const {
   BitReader r = units_.bits(unit, payload);
   const std::uint64_t unit_bytes = unit.end() - unit.offset;
-  return unit.type() == UnitType::kModel ? parser.model(r, models, unit_bytes)
+  return unit.type() == UnitType::kRig ? parser.rig(r, rigs, unit_bytes)
                                          : parser.slice(r, unit.offset * 8, unit_bytes);
 }
 

@@ -1,4 +1,4 @@
-// Reads access units and skinned models from a stream: collects their units and parses them.
+// Reads access units and shared rigs from a stream: collects their units and parses them.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "decoder/codec/options.h"
 #include "decoder/codec/parse/access_unit_parser.h"
 #include "decoder/codec/parse/memory_limit.h"
-#include "decoder/codec/parse/model_parser.h"
+#include "decoder/codec/parse/rig_parser.h"
 #include "decoder/codec/units/unit_reader.h"
 
 namespace rlpc {
@@ -53,7 +53,7 @@ class AccessUnitReader {
     return {memory_.max_bytes, memory_.bytes_in_use + cached_bytes_};
   }
   const SliceCut& cut() const { return cut_; }
-  // Of what read() and read_model() give from now on.
+  // Of what read() and read_rig() give from now on.
   void set_cut(const SliceCut& cut) { cut_ = cut; }
   // Sets the memory that the rest of the decoder uses from now on.
   void set_bytes_in_use(std::uint64_t bytes) { memory_.bytes_in_use = bytes; }
@@ -61,12 +61,12 @@ class AccessUnitReader {
   void set_cached_bytes(std::uint64_t bytes) { cached_bytes_ = bytes; }
 
   // Reads and parses an access unit. gof_unit: its GOF unit; first_frame: the first_frame that
-  // the GOF must have; models: those alive.
+  // the GOF must have; rigs: those alive.
   Result<AccessUnit> read(const UnitHeader& gof_unit, std::uint32_t first_frame,
-                          const ModelSlots& models);
-  // Reads and parses a skinned model.
-  Result<ParsedModel> read_model(const UnitHeader& model_unit, const ModelSlots& models);
-  // End of the last access unit or skinned model read, bytes from the start of the stream.
+                          const RigSlots& rigs);
+  // Reads and parses a shared rig.
+  Result<ParsedRig> read_rig(const UnitHeader& rig_unit, const RigSlots& rigs);
+  // End of the last access unit or shared rig read, bytes from the start of the stream.
   std::uint64_t end() const { return end_; }
 
   // read() in two steps; parse() may run on another thread. max_memory_bytes limits the
@@ -74,23 +74,23 @@ class AccessUnitReader {
   std::optional<RawAccessUnit> collect(const UnitHeader& gof_unit, std::uint32_t first_frame,
                                        std::uint64_t max_memory_bytes);
   // cut: one that no set_cut() changes.
-  Result<AccessUnit> parse(const RawAccessUnit& coded, const ModelSlots& models,
+  Result<AccessUnit> parse(const RawAccessUnit& coded, const RigSlots& rigs,
                            const SliceCut& cut, std::uint64_t max_memory_bytes) const;
-  // The same for a skinned model.
-  std::optional<Vector<RawUnit>> collect_model(const UnitHeader& model_unit,
+  // The same for a shared rig.
+  std::optional<Vector<RawUnit>> collect_rig(const UnitHeader& rig_unit,
                                                std::uint64_t max_memory_bytes);
-  Result<ParsedModel> parse_model(const Vector<RawUnit>& coded, const ModelSlots& models,
+  Result<ParsedRig> parse_rig(const Vector<RawUnit>& coded, const RigSlots& rigs,
                                   const SliceCut& cut, std::uint64_t max_memory_bytes) const;
 
  private:
   Result<bool> parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
                           const Vector<std::uint8_t>& payload, std::uint32_t first_frame,
-                          const ModelSlots& models) const;
-  Result<bool> parse_unit(ModelParser& parser, const UnitHeader& unit,
-                          const Vector<std::uint8_t>& payload, const ModelSlots& models) const;
+                          const RigSlots& rigs) const;
+  Result<bool> parse_unit(RigParser& parser, const UnitHeader& unit,
+                          const Vector<std::uint8_t>& payload, const RigSlots& rigs) const;
   MemoryLimit limit_ahead(std::uint64_t max_memory_bytes) const;
   // Whether there is memory for the payload of a unit, in addition to what its access unit or
-  // skinned model has taken.
+  // shared rig has taken.
   static Result<bool> check_fits(const UnitHeader& unit, std::uint64_t taken_bytes,
                                  const MemoryLimit& memory);
   // Whether a slice need not be read: the cut drops it.

@@ -28,8 +28,8 @@ GofFigure temporal_layers_of(const SkinnedGof& gof) {
           static_cast<std::uint32_t>(gof.num_temporal_layers), true};
 }
 
-// What has vertices in a GOF of bones or skinned model.
-void add_rig(const SkinnedModel& rig, SlicedSummary& summary) {
+// What has vertices in a GOF of bones or shared rig.
+void add_rig(const SharedRig& rig, SlicedSummary& summary) {
   summary.layer_group_size = rig.layer_group_size;
   summary.first_group = "influences, rest positions";
   summary.figures = {
@@ -43,7 +43,7 @@ void add_rig(const SkinnedModel& rig, SlicedSummary& summary) {
 }
 
 void add_kind(const SkinnedGof& gof, GofSummary& summary) {
-  if (!gof.model) {
+  if (!gof.rig) {
     add_rig(gof, summary);
     summary.figures.push_back(temporal_layers_of(gof));
     return;
@@ -101,27 +101,27 @@ GofSummary summary_of(const AccessUnit& access_unit) {
   return summary;
 }
 
-// Collects summaries, with the skinned models alive.
+// Collects summaries, with the shared rigs alive.
 class Summariser {
  public:
-  void add(const ParsedModel& parsed) {
-    const auto model = make_shared_owned<ModelSummary>();
-    model->number = summary_.models.size();
-    model->model_idx = parsed.model_idx;
-    model->num_component_groups = parsed.model->num_component_groups;
-    model->bytes = parsed.bytes;
-    model->slices = parsed.slices;
-    add_rig(*parsed.model, *model);
-    of_idx_[parsed.model_idx] = model;
-    summary_.models.push_back(model);
+  void add(const ParsedRig& parsed) {
+    const auto rig = make_shared_owned<RigSummary>();
+    rig->number = summary_.rigs.size();
+    rig->rig_idx = parsed.rig_idx;
+    rig->num_component_groups = parsed.rig->num_component_groups;
+    rig->bytes = parsed.bytes;
+    rig->slices = parsed.slices;
+    add_rig(*parsed.rig, *rig);
+    of_idx_[parsed.rig_idx] = rig;
+    summary_.rigs.push_back(rig);
   }
   void add(const AccessUnit& access_unit) {
     GofSummary gof = summary_of(access_unit);
     const auto* skinned = std::get_if<SkinnedGof>(&access_unit.gof);
-    if (skinned != nullptr && skinned->model) {
-      const auto& model = of_idx_[skinned->model_idx];
-      ++model->num_gofs;
-      gof.model = model;
+    if (skinned != nullptr && skinned->rig) {
+      const auto& rig = of_idx_[skinned->rig_idx];
+      ++rig->num_gofs;
+      gof.rig = rig;
     }
     summary_.gofs.push_back(std::move(gof));
   }
@@ -129,7 +129,7 @@ class Summariser {
 
  private:
   StreamSummary summary_;
-  std::array<std::shared_ptr<ModelSummary>, kMaxModels> of_idx_;
+  std::array<std::shared_ptr<RigSummary>, kMaxRigs> of_idx_;
 };
 
 }  // namespace
@@ -187,31 +187,31 @@ SliceTotals SlicedSummary::totals(const SliceGroups& groups) const {
   return totals;
 }
 
-SliceGroups ModelSummary::groups_that_stay(const SliceCut& cut) const {
+SliceGroups RigSummary::groups_that_stay(const SliceCut& cut) const {
   SliceGroups groups{1, layer_groups_that_stay(layer_group_size, cut)};
   add_groups(slices, cut, 0, groups);
   return groups;
 }
 
-bool ModelSummary::is_cut_by(const SliceCut& cut) const {
+bool RigSummary::is_cut_by(const SliceCut& cut) const {
   return totals(groups_that_stay(cut)).num_slices < slices.size();
 }
 
 SliceTotals GofSummary::totals(const SliceGroups& groups) const {
   SliceTotals totals = SlicedSummary::totals(groups);
-  if (model) totals.num_layers = model->totals(groups).num_layers;
+  if (rig) totals.num_layers = rig->totals(groups).num_layers;
   return totals;
 }
 
-// Local component groups follow those of a complete skinned model.
+// Local component groups follow those of a complete shared rig.
 SliceGroups GofSummary::groups_that_stay(const SliceCut& cut) const {
   SliceGroups groups{1, layer_groups_that_stay(layer_group_size, cut)};
   std::uint64_t trajectories = 0;
-  if (model) groups = model->groups_that_stay(cut);
+  if (rig) groups = rig->groups_that_stay(cut);
   groups.temporal_layers = cut.max_temporal_layers;
-  if (model) {
-    if (groups.component_groups <= model->num_component_groups) return groups;
-    trajectories = model->totals(groups).num_trajectories;
+  if (rig) {
+    if (groups.component_groups <= rig->num_component_groups) return groups;
+    trajectories = rig->totals(groups).num_trajectories;
   }
   add_groups(slices, cut, trajectories, groups);
   return groups;
@@ -219,21 +219,21 @@ SliceGroups GofSummary::groups_that_stay(const SliceCut& cut) const {
 
 bool GofSummary::is_cut_by(const SliceCut& cut) const {
   return totals(groups_that_stay(cut)).num_slices < slices.size() ||
-         (model && model->is_cut_by(cut));
+         (rig && rig->is_cut_by(cut));
 }
 
 Result<StreamSummary> summarise_all(StreamReader& stream, const CheckAccessUnit& check) {
   Summariser summariser;
-  stream.models().watch([&](const ParsedModel& model) { summariser.add(model); });
+  stream.rigs().watch([&](const ParsedRig& rig) { summariser.add(rig); });
   for (;;) {
     const auto access_unit = stream.next();
-    if (!access_unit || !*access_unit) stream.models().watch({});
+    if (!access_unit || !*access_unit) stream.rigs().watch({});
     if (!access_unit) return access_unit.error();
     if (!*access_unit) return summariser.finish();
     summariser.add(**access_unit);
     if (!check) continue;
     if (const auto error = check(**access_unit)) {
-      stream.models().watch({});
+      stream.rigs().watch({});
       return *error;
     }
   }

@@ -1,4 +1,4 @@
-// Summarises GOFs and skinned models in numbers: clusters and components, or bones,
+// Summarises GOFs and shared rigs in numbers: clusters and components, or bones,
 // trajectories and slices.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace rlpc {
 
-// The leading component groups of a GOF or skinned model, including that of the rest positions,
+// The leading component groups of a GOF or shared rig, including that of the rest positions,
 // its leading layer groups, and its first temporal layers.
 struct SliceGroups {
   std::uint32_t component_groups = SliceCut::kAll;
@@ -38,7 +38,7 @@ struct SliceTotals {
   std::uint32_t num_trajectories = 0;
   std::uint32_t num_layers = 0;  // layers with residuals of rest positions
   std::uint32_t num_temporal_layers = 1;
-  std::uint64_t bytes = 0;  // of the GOF or skinned model unit and of slice units
+  std::uint64_t bytes = 0;  // of the GOF or rig unit and of slice units
 };
 
 // A number that describes a GOF. one, many: the noun, singular and plural; null: only shown in
@@ -51,7 +51,7 @@ struct GofFigure {
   bool only_many = false;
 };
 
-// A GOF or skinned model.
+// A GOF or shared rig.
 struct SlicedSummary {
   std::uint64_t bytes = 0;  // of its unit
 
@@ -80,9 +80,9 @@ struct SlicedSummary {
   SliceTotals totals(const SliceGroups& groups) const;
 };
 
-struct ModelSummary : SlicedSummary {
+struct RigSummary : SlicedSummary {
   std::size_t number = 0;  // among those of the stream, counted from 0
-  std::uint32_t model_idx = 0;
+  std::uint32_t rig_idx = 0;
   std::uint32_t num_component_groups = 0;
   std::uint32_t num_gofs = 0;  // that use it
 
@@ -94,18 +94,18 @@ struct GofSummary : SlicedSummary {
   GofKind kind = GofKind::kCluster;
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
-  std::shared_ptr<const ModelSummary> model;  // that it uses; null: none
+  std::shared_ptr<const RigSummary> rig;  // that it uses; null: none
   Vector<VertexModes> vertex_modes;           // [num_frames] if it has patches
 
-  // Bytes and slices are its own; layers are those of its skinned model.
+  // Bytes and slices are its own; layers are those of its shared rig.
   SliceTotals totals(const SliceGroups& groups) const;
   SliceGroups groups_that_stay(const SliceCut& cut) const;
-  // Whether the GOF or its skinned model loses a slice.
+  // Whether the GOF or its shared rig loses a slice.
   bool is_cut_by(const SliceCut& cut) const;
 };
 
 struct StreamSummary {
-  Vector<std::shared_ptr<const ModelSummary>> models;  // in the order of the stream
+  Vector<std::shared_ptr<const RigSummary>> rigs;  // in the order of the stream
   Vector<GofSummary> gofs;
 
   std::uint32_t num_frames() const {
@@ -113,7 +113,7 @@ struct StreamSummary {
   }
 };
 
-// Summaries of all GOFs and skinned models of a stream, which is read to its end. `check` is
+// Summaries of all GOFs and shared rigs of a stream, which is read to its end. `check` is
 // called with each access unit, and can end it with an error.
 using CheckAccessUnit = std::function<std::optional<Error>(const AccessUnit&)>;
 Result<StreamSummary> summarise_all(StreamReader& stream, const CheckAccessUnit& check = {});

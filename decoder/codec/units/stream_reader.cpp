@@ -33,7 +33,7 @@ StreamReader::StreamReader(std::unique_ptr<ByteSource> source, const DecoderOpti
       skips_damaged_units_(options.skip_damaged_units),
       units_(std::move(source), options.trace, options.limits.max_memory_bytes),
       access_units_(units_, context_, options),
-      models_(units_, access_units_) {}
+      rigs_(units_, access_units_) {}
 
 Result<bool> StreamReader::open() {
   if (auto ok = units_.stream_header(); !ok) return ok;
@@ -62,7 +62,7 @@ Result<bool> StreamReader::open() {
 // 6.1 StartsGofs( )
 bool StreamReader::starts_gofs(const UnitHeader& unit) const {
   return unit.type() == UnitType::kGof ||
-         (unit.type() == UnitType::kModel && units_.version_minor() >= 2);
+         (unit.type() == UnitType::kRig && units_.version_minor() >= 2);
 }
 
 // 6.3: always the first unit.
@@ -173,7 +173,7 @@ Result<bool> StreamReader::read_clip_table(const UnitHeader& unit) {
   return true;
 }
 
-Result<std::optional<UnitHeader>> StreamReader::find_gof(Models models) {
+Result<std::optional<UnitHeader>> StreamReader::find_gof(Rigs rigs) {
   for (;;) {
     const auto unit = units_.header_at(offset_);
     if (!unit) return unit.error();
@@ -188,7 +188,7 @@ Result<std::optional<UnitHeader>> StreamReader::find_gof(Models models) {
       return std::optional<UnitHeader>();
     }
     if (starts_gofs(*unit)) {
-      const auto end = models == Models::kSkip ? models_.skip(*unit) : models_.read(*unit);
+      const auto end = rigs == Rigs::kSkip ? rigs_.skip(*unit) : rigs_.read(*unit);
       if (!end) return end.error();
       offset_ = *end;
       continue;
@@ -233,8 +233,8 @@ Result<std::optional<std::uint32_t>> StreamReader::skip_damage() {
       frames_parsed_ = first_frame;
       return std::optional(first_frame);
     }
-    if (unit->type() == UnitType::kModel && !is_first) {
-      const auto end = models_.skip(*unit);
+    if (unit->type() == UnitType::kRig && !is_first) {
+      const auto end = rigs_.skip(*unit);
       if (!end) return end.error();
       offset_ = *end;
     } else {
@@ -259,9 +259,9 @@ std::uint32_t StreamReader::find_num_frames() {
 }
 
 Result<AccessUnit> StreamReader::read(const UnitHeader& gof_unit) {
-  const auto models = models_.at(gof_unit.offset);
-  if (!models) return models.error();
-  auto access_unit = access_units_.read(gof_unit, frames_parsed_, *models);
+  const auto rigs = rigs_.at(gof_unit.offset);
+  if (!rigs) return rigs.error();
+  auto access_unit = access_units_.read(gof_unit, frames_parsed_, *rigs);
   if (access_unit) {
     go_past(gof_unit, access_unit->header().num_frames, access_units_.end());
   }
@@ -362,7 +362,7 @@ Result<GofPlace> StreamReader::pass_gofs_to(std::uint32_t frame) {
     if (!index && !can_wait) return index.error();
     if (index) {
       index_tried_ = true;
-      models_.add(index->models);
+      rigs_.add(index->rigs);
       if (!index->gofs.empty()) gofs_ = std::move(index->gofs);
     }
   }
@@ -375,7 +375,7 @@ Result<GofPlace> StreamReader::pass_gofs_to(std::uint32_t frame) {
   }
   // Skips GOFs forward: only their headers are read.
   for (;;) {
-    const auto unit = find_gof(Models::kSkip);
+    const auto unit = find_gof(Rigs::kSkip);
     if (!unit) return unit.error();
     if (!*unit) return Error{Errc::kInvalid, "R-END-01", "unit_type", offset_ * 8};
     const auto gof = gof_header(**unit);

@@ -15,7 +15,7 @@
 #include "decoder/codec/parse/sequence/parse_gof_index.h"
 #include "decoder/codec/parse/sequence/parse_sequence_header.h"
 #include "decoder/codec/units/access_unit_reader.h"
-#include "decoder/codec/units/stream_models.h"
+#include "decoder/codec/units/stream_rigs.h"
 #include "decoder/codec/units/unit_reader.h"
 
 namespace rlpc {
@@ -55,9 +55,9 @@ class StreamReader {
   const std::optional<UnitHeader>& attribute_unit() const { return attribute_unit_; }
 
   // Advances to the next GOF unit, past everything in between. None: a proper end of the
-  // sequence. Skinned models are parsed, or only those that a GOF to be read uses.
-  enum class Models : std::uint8_t { kParse, kSkip };
-  Result<std::optional<UnitHeader>> find_gof(Models models = Models::kParse);
+  // sequence. Shared rigs are parsed, or only those that a GOF to be read uses.
+  enum class Rigs : std::uint8_t { kParse, kSkip };
+  Result<std::optional<UnitHeader>> find_gof(Rigs rigs = Rigs::kParse);
   // The access unit that begins with the unit found; advances past it.
   Result<AccessUnit> read(const UnitHeader& gof_unit);
   // The same for an access unit read elsewhere, whose units end at `end`.
@@ -102,7 +102,7 @@ class StreamReader {
   std::uint64_t bytes_in_use() const { return bytes_in_use_; }
   UnitReader& units() { return units_; }
   AccessUnitReader& access_units() { return access_units_; }
-  StreamModels& models() { return models_; }
+  StreamRigs& rigs() { return rigs_; }
 
  private:
   bool starts_gofs(const UnitHeader& unit) const;
@@ -130,7 +130,7 @@ class StreamReader {
   UnitReader units_;
   StreamContext context_;
   AccessUnitReader access_units_;
-  StreamModels models_;
+  StreamRigs rigs_;
   Vector<Triangle> triangles_;
   Vector<std::uint32_t> vertex_order_;
   String metadata_;

@@ -46,9 +46,9 @@ bool too_many_layers(const ExtractOptions& o, const SliceTotals& after) {
   return after.num_layers > o.cut.max_layers;
 }
 
-// By its place in the stream: most streams have a single model_idx.
-std::string name_of(const ModelSummary& model) {
-  return "skinned model " + std::to_string(model.number);
+// By its place in the stream: most streams have a single rig_idx.
+std::string name_of(const RigSummary& rig) {
+  return "shared rig " + std::to_string(rig.number);
 }
 
 nlohmann::ordered_json json_of(const SliceTotals& totals) {
@@ -66,11 +66,11 @@ nlohmann::ordered_json size_json(const SubStreamExtractor& cutter, std::uint64_t
 void print_json(const ExtractOptions& o, const SubStreamExtractor& cutter,
                 std::uint64_t bytes) {
   bool met = true;
-  nlohmann::ordered_json models = nlohmann::ordered_json::array();
-  for (const auto& model : cutter.summary().models) {
-    models.push_back({{"model_idx", model->model_idx},
-                      {"before", json_of(model->totals({}))},
-                      {"after", json_of(cutter.totals_that_stay(*model))}});
+  nlohmann::ordered_json rigs = nlohmann::ordered_json::array();
+  for (const auto& rig : cutter.summary().rigs) {
+    rigs.push_back({{"rig_idx", rig->rig_idx},
+                      {"before", json_of(rig->totals({}))},
+                      {"after", json_of(cutter.totals_that_stay(*rig))}});
   }
   nlohmann::ordered_json gofs = nlohmann::ordered_json::array();
   for (const GofSummary& gof : cutter.summary().gofs) {
@@ -87,7 +87,7 @@ void print_json(const ExtractOptions& o, const SubStreamExtractor& cutter,
                                        {"attributes_dropped", cutter.drops_attributes()},
                                        {"before", size_json(cutter, cutter.size())},
                                        {"after", size_json(cutter, bytes)},
-                                       {"models", std::move(models)},
+                                       {"rigs", std::move(rigs)},
                                        {"gofs", std::move(gofs)}};
   std::cout << json_text(json, 2) << "\n";
 }
@@ -99,7 +99,7 @@ std::string temporal_text(const SliceTotals& before, const SliceTotals& after) {
          std::to_string(before.num_temporal_layers) + " temporal layers, ";
 }
 
-// What stays of a GOF or skinned model with vertices.
+// What stays of a GOF or shared rig with vertices.
 void print_cut(const ExtractOptions& o, const std::string& name, const SliceTotals& before,
                const SliceTotals& after) {
   std::printf("  %s: %u of %u trajectories, %u of %u layers, %s%zu of %zu slices, %" PRIu64
@@ -124,8 +124,8 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
               cutter.size(), bpvf(cutter, cutter.size()));
   std::printf("%s: %" PRIu64 " bytes, %.4f bpvf\n", printable(o.output).c_str(), bytes,
               bpvf(cutter, bytes));
-  for (const auto& model : cutter.summary().models) {
-    print_cut(o, name_of(*model), model->totals({}), cutter.totals_that_stay(*model));
+  for (const auto& rig : cutter.summary().rigs) {
+    print_cut(o, name_of(*rig), rig->totals({}), cutter.totals_that_stay(*rig));
   }
   for (const GofSummary& gof : cutter.summary().gofs) {
     const std::string name = "frames " + std::to_string(gof.first_frame) + " to " +
@@ -140,10 +140,10 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
                   " bytes\n",
                   name.c_str(), after.num_layers, before.num_layers, after.num_slices,
                   before.num_slices, after.bytes, before.bytes);
-    } else if (gof.model) {
+    } else if (gof.rig) {
       std::printf("  %s, tracks of %s: %u of %u trajectories, %s%zu of %zu slices, %" PRIu64
                   " of %" PRIu64 " bytes\n",
-                  name.c_str(), name_of(*gof.model).c_str(), after.num_trajectories,
+                  name.c_str(), name_of(*gof.rig).c_str(), after.num_trajectories,
                   before.num_trajectories, temporal_text(before, after).c_str(),
                   after.num_slices, before.num_slices, after.bytes, before.bytes);
     } else {

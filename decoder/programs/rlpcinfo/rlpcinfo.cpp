@@ -41,7 +41,7 @@ constexpr const char* kExamples = R"(Examples
 
 constexpr const char* kDetails =
     R"(--extract writes the stream without the slices of finer detail (not Baseline),
-without re-encoding. Of each skinned GOF and skinned model, it keeps the leading
+without re-encoding. Of each skinned GOF and shared rig, it keeps the leading
 component groups with at most K trajectories in total (0: only bones and rest
 shape), and the coarsest layer groups with at most L vertex layers in total
 (always at least the first).

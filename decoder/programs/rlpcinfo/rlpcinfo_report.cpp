@@ -22,7 +22,7 @@ double bpvf(const StreamInfo& s, double bits) {
   return bits / (static_cast<double>(s.header.num_vertices) * s.header.num_frames);
 }
 
-// The slices of a GOF or skinned model, and its sizes when cut.
+// The slices of a GOF or shared rig, and its sizes when cut.
 template <class Summary>
 void add_slices(const Summary& summary, nlohmann::ordered_json& json) {
   nlohmann::ordered_json slices = nlohmann::ordered_json::array();
@@ -75,7 +75,7 @@ void add_vertex_modes(const GofSummary& gof, nlohmann::ordered_json& json) {
 nlohmann::ordered_json json_of(const GofSummary& gof) {
   nlohmann::ordered_json json = {{"first_frame", gof.first_frame},
                                  {"num_frames", gof.num_frames}};
-  if (gof.model) json["model"] = gof.model->number;
+  if (gof.rig) json["rig"] = gof.rig->number;
   for (const GofFigure& figure : gof.figures) json[figure.key] = figure.value;
   if (has_slices(gof.kind)) {
     add_slices(gof, json);
@@ -87,10 +87,10 @@ nlohmann::ordered_json json_of(const GofSummary& gof) {
   return json;
 }
 
-nlohmann::ordered_json json_of(const ModelSummary& model) {
-  nlohmann::ordered_json json = {{"model_idx", model.model_idx}, {"num_gofs", model.num_gofs}};
-  for (const GofFigure& figure : model.figures) json[figure.key] = figure.value;
-  add_slices(model, json);
+nlohmann::ordered_json json_of(const RigSummary& rig) {
+  nlohmann::ordered_json json = {{"rig_idx", rig.rig_idx}, {"num_gofs", rig.num_gofs}};
+  for (const GofFigure& figure : rig.figures) json[figure.key] = figure.value;
+  add_slices(rig, json);
   return json;
 }
 
@@ -125,7 +125,7 @@ std::string counted(std::uint64_t count, const Noun& noun) {
 
 using Summaries = std::vector<const SlicedSummary*>;
 
-// "12 clusters", or "3 to 12 clusters": a figure over all GOFs, or skinned models.
+// "12 clusters", or "3 to 12 clusters": a figure over all GOFs, or shared rigs.
 std::string range_over(const Summaries& list, std::size_t place) {
   const auto value = [&](const SlicedSummary* summary) {
     return summary->figures[place].value;
@@ -164,11 +164,11 @@ void print_figures(const std::string& name, const Summaries& list) {
   std::printf("  %s: %zu, with %s each\n", name.c_str(), list.size(), listed(ranges).c_str());
 }
 
-// A line for skinned models, and one per kind of GOF.
+// A line for shared rigs, and one per kind of GOF.
 void print_kinds(const StreamSummary& stream) {
-  Summaries models;
-  for (const auto& model : stream.models) models.push_back(model.get());
-  if (!models.empty()) print_figures("skinned models", models);
+  Summaries rigs;
+  for (const auto& rig : stream.rigs) rigs.push_back(rig.get());
+  if (!rigs.empty()) print_figures("shared rigs", rigs);
   std::vector<GofKind> kinds;
   for (const GofSummary& gof : stream.gofs) {
     if (std::find(kinds.begin(), kinds.end(), gof.kind) == kinds.end())
@@ -196,7 +196,7 @@ void print_temporal_layers(const SlicedSummary& summary) {
   }
 }
 
-// A row per component group, a column per layer group, and the size of the GOF or skinned model
+// A row per component group, a column per layer group, and the size of the GOF or shared rig
 // when cut after each of them; and a row per temporal layer.
 template <class Summary>
 void print_slices(const Summary& summary, const char* to_here) {
@@ -208,7 +208,7 @@ void print_slices(const Summary& summary, const char* to_here) {
   for (std::uint32_t group = 0; group < summary.num_groups(); ++group) {
     const SliceTotals cut = summary.totals({group + 1, SliceCut::kAll});
     const bool has_rest = slice->component_group_idx == 0 && slice->temporal_layer_idx == 0;
-    if (group == 0 && !has_rest) continue;  // a GOF that uses a skinned model
+    if (group == 0 && !has_rest) continue;  // a GOF that uses a shared rig
     const std::string name =
         group == 0 ? summary.first_group
                    : "group " + std::to_string(group) +
@@ -239,11 +239,11 @@ std::vector<std::string> figures_of(const SlicedSummary& summary) {
   return figures;
 }
 
-void print_model(const ModelSummary& model) {
-  std::printf("\n  skinned model %zu, of %s: %s in %" PRIu64 " bytes; slices in bytes\n",
-              model.number, counted(model.num_gofs, {"GOF", "GOFs"}).c_str(),
-              figures_of(model)[0].c_str(), model.bytes);
-  print_slices(model, "model to here");
+void print_rig(const RigSummary& rig) {
+  std::printf("\n  shared rig %zu, of %s: %s in %" PRIu64 " bytes; slices in bytes\n",
+              rig.number, counted(rig.num_gofs, {"GOF", "GOFs"}).c_str(),
+              figures_of(rig)[0].c_str(), rig.bytes);
+  print_slices(rig, "rig to here");
 }
 
 // "  49 frames with motions of patches; ..."
@@ -272,8 +272,8 @@ void print_gof(const GofSummary& gof) {
     std::printf("%s in %" PRIu64 " bytes\n", listed(figures_of(gof)).c_str(), gof.bytes);
     return;
   }
-  const std::string what = gof.model
-                               ? "tracks of skinned model " + std::to_string(gof.model->number)
+  const std::string what = gof.rig
+                               ? "tracks of shared rig " + std::to_string(gof.rig->number)
                                : figures_of(gof)[0];  // the table has the others
   const char* units = gof.kind == GofKind::kInter ? "frame units" : "slices";
   std::printf("%s in %" PRIu64 " bytes; %s in bytes\n", what.c_str(), gof.bytes, units);
@@ -281,17 +281,17 @@ void print_gof(const GofSummary& gof) {
   print_vertex_modes(gof);
 }
 
-// Each skinned model is listed before the first GOF that uses it; those that none uses, at the
+// Each shared rig is listed before the first GOF that uses it; those that none uses, at the
 // end.
 void print_all(const StreamSummary& stream) {
-  std::vector<bool> listed(stream.models.size(), false);
+  std::vector<bool> listed(stream.rigs.size(), false);
   for (const GofSummary& gof : stream.gofs) {
-    if (gof.model && !listed[gof.model->number]) print_model(*gof.model);
-    if (gof.model) listed[gof.model->number] = true;
+    if (gof.rig && !listed[gof.rig->number]) print_rig(*gof.rig);
+    if (gof.rig) listed[gof.rig->number] = true;
     print_gof(gof);
   }
-  for (const auto& model : stream.models) {
-    if (!listed[model->number]) print_model(*model);
+  for (const auto& rig : stream.rigs) {
+    if (!listed[rig->number]) print_rig(*rig);
   }
 }
 
@@ -333,7 +333,7 @@ void print_json(const StreamInfo& s) {
       {"bytes", s.bytes},
       {"bpvf", bpvf(s, 8.0 * static_cast<double>(s.bytes))},
       {"bits", bits}};
-  for (const auto& model : s.summary.models) json["models"].push_back(json_of(*model));
+  for (const auto& rig : s.summary.rigs) json["rigs"].push_back(json_of(*rig));
   for (const GofSummary& gof : s.summary.gofs) json["gofs"].push_back(json_of(gof));
   if (s.coarse != nullptr) json["coarse_meshes"] = json_of(*s.coarse);
   for (const Clip& clip : s.clips) {

@@ -136,8 +136,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"OneGof", Profile::kMain, Preset::kMedium, 36},
         Case{"Clusters", Profile::kMain, Preset::kMedium, 12, 0.05},
         Case{"Slow", Profile::kMain, Preset::kSlow, 18},
-        Case{"Models", Profile::kHigh, Preset::kMedium, 12},
-        Case{"ModelsFast", Profile::kHigh, Preset::kFast, 9},
+        Case{"Rigs", Profile::kHigh, Preset::kMedium, 12},
+        Case{"RigsFast", Profile::kHigh, Preset::kFast, 9},
         Case{"Baseline", Profile::kBaseline, Preset::kMedium, 12},
         Case{"Rate", Profile::kMain, Preset::kFast, 9, 0.0, {Target::kBpvf, 2.0}},
         Case{

@@ -14,9 +14,9 @@ namespace {
 // Per position of the span being coded. Measured with random motion, which needs all
 // components: 110 (Baseline) to 185 (Main). Real motion needs 40.
 constexpr std::uint64_t kBytesOfPosition = 190;  // fixed: memory
-// Of a skinned model that later spans may use: factors of two or four bytes, of at most three
+// Of a shared rig that later spans may use: factors of two or four bytes, of at most three
 // trajectories for each frame.
-constexpr std::uint64_t kFactorsOfModel = 12;  // fixed: memory
+constexpr std::uint64_t kFactorsOfRig = 12;  // fixed: memory
 
 // Frames that can be coded at once.
 std::uint64_t frames_in_memory(const EncoderSettings& settings, std::uint32_t num_vertices,
@@ -64,21 +64,21 @@ MemoryNeed memory_need(const EncoderSettings& settings, const SequenceHeader& he
   constexpr std::uint64_t kOfVertex = 700;                   // fixed: memory
   constexpr std::uint64_t kOfTriangle = 250;                 // fixed: memory
   constexpr std::uint64_t kKept = 70;                        // fixed: memory
-  // The rest of a skinned model: rest position, influences, two sets of weights of prediction.
-  constexpr std::uint64_t kOfModel = 400;  // fixed: memory
-  const bool has_models = settings.profile == Profile::kHigh && span_frames < header.num_frames;
-  const std::uint64_t of_model =
-      has_models ? header.num_vertices * (kOfModel + kFactorsOfModel * span_frames) : 0;
+  // The rest of a shared rig: rest position, influences, two sets of weights of prediction.
+  constexpr std::uint64_t kOfRig = 400;  // fixed: memory
+  const bool has_rigs = settings.profile == Profile::kHigh && span_frames < header.num_frames;
+  const std::uint64_t of_rig =
+      has_rigs ? header.num_vertices * (kOfRig + kFactorsOfRig * span_frames) : 0;
   // Each thread has a span of its own, or a candidate for one, encoded by all kinds of GOFs;
-  // another model is in force.
+  // another rig is in force.
   const std::uint64_t of_thread =
       header.num_vertices *
           (kBytesOfPosition * span_frames + bytes_of_frames(settings, header, span_frames)) +
-      of_model;
+      of_rig;
   const std::uint64_t of_vertex =
       kOfVertex + kKept * kept_frames + source.bytes_of_position * span_frames;
   const std::uint64_t shared = kFixed + source.bytes + header.num_vertices * of_vertex +
-                               header.num_triangles * kOfTriangle + of_model;
+                               header.num_triangles * kOfTriangle + of_rig;
   return {shared + of_thread, of_thread};
 }
 
@@ -109,8 +109,8 @@ std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader
         longest, frames_in_memory(settings, header.num_vertices, bytes_of_position)));
   };
   std::uint32_t span = frames(kBytesOfPosition);
-  // With several spans, there are two skinned models besides: one in force and a new one.
-  if (header.num_frames > span) span = frames(kBytesOfPosition + 2 * kFactorsOfModel);
+  // With several spans, there are two shared rigs besides: one in force and a new one.
+  if (header.num_frames > span) span = frames(kBytesOfPosition + 2 * kFactorsOfRig);
   // What does not grow with the span may need more than the other half of the limit.
   const auto fits = [&] {
     return memory_need(settings, header, std::min(span, header.num_frames), 0, source)

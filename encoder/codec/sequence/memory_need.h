@@ -10,7 +10,7 @@
 namespace rlpc {
 
 inline constexpr std::uint32_t kDefaultGofFrames = 128;  // fixed: how far a seek decodes
-// With skinned models, a seek only parses the tracks of a GOF, some milliseconds. Compared with
+// With shared rigs, a seek only parses the tracks of a GOF, some milliseconds. Compared with
 // a single GOF, this length takes up to 6 % more bytes (morph-stress), half of it up to 12 %,
 // at a KG error of 0.1 %; sequences of twice the length were not at hand.
 inline constexpr std::uint32_t kDefaultTrackFrames = 256;  // fixed: how far a seek parses
@@ -32,7 +32,7 @@ struct SourceMemory {
   std::uint64_t bytes_of_position = 0;  // for each vertex and frame of the longest span
 };
 
-// Maximum frames per span: in the High profile, those of GOFs that share a skinned model, as
+// Maximum frames per span: in the High profile, those of GOFs that share a shared rig, as
 // many as memory allows.
 std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header,
                            const SourceMemory& source);

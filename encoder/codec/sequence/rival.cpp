@@ -14,7 +14,7 @@ struct Frames {
   std::uint32_t end = 0;
 };
 
-// The bytes that a stream spends on some frames. Those of a GOF, and those of a skinned model,
+// The bytes that a stream spends on some frames. Those of a GOF, and those of a shared rig,
 // are shared by their frames alike.
 double bytes_of(const BatchTrial& trial, const Frames& frames) {
   const auto part_of = [&](std::uint32_t first, std::uint32_t count) {
@@ -26,14 +26,14 @@ double bytes_of(const BatchTrial& trial, const Frames& frames) {
   std::uint32_t first = 0;
   for (const SpanResult& span : trial.spans) {
     const std::uint32_t of_span = first;
-    double of_models = 0.0;
+    double of_rigs = 0.0;
     for (const GofBytes& gof : span.gofs) {
-      const auto of_gof = static_cast<double>(gof.size() - gof.model.size());
+      const auto of_gof = static_cast<double>(gof.size() - gof.rig.size());
       bytes += of_gof * part_of(first, gof.num_frames);
-      of_models += static_cast<double>(gof.model.size());
+      of_rigs += static_cast<double>(gof.rig.size());
       first += gof.num_frames;
     }
-    bytes += of_models * part_of(of_span, first - of_span);
+    bytes += of_rigs * part_of(of_span, first - of_span);
   }
   return bytes;
 }

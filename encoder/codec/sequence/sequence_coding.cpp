@@ -86,11 +86,11 @@ std::unique_ptr<SpanCoder> SequenceCoding::make_coder(const SpanFrames& frames,
   return std::make_unique<KindSearch>(kinds_, frames, settings_.preset);
 }
 
-std::optional<EncodedSpan> SequenceCoding::encode_with(const KeptModel& model,
+std::optional<EncodedSpan> SequenceCoding::encode_with(const KeptRig& rig,
                                                        const SpanFrames& frames, double step,
                                                        double most) const {
   for (const auto& kind : kinds_) {
-    if (auto encoded = kind->encode_with(model, frames, step, most)) return encoded;
+    if (auto encoded = kind->encode_with(rig, frames, step, most)) return encoded;
   }
   return std::nullopt;
 }
@@ -170,13 +170,13 @@ void SequenceCoding::to_input(std::span<const std::int32_t> positions,
 std::vector<GofBytes> write_gof_units(const EncodedSpan& encoded, const FrameRange& span,
                                       bool is_open_ended) {
   std::vector<GofBytes> gofs;
-  Bytes model;
+  Bytes rig;
   for (const auto& unit : encoded.units) {
     const Bytes bytes = write_unit(unit.type, unit.payload);
     if (unit.type == UnitType::kGof)
-      gofs.push_back({0, std::exchange(model, {}), {}, {}, false, {}});
+      gofs.push_back({0, std::exchange(rig, {}), {}, {}, false, {}});
     if (unit.type == UnitType::kFrame && is_open_ended) gofs.back().has_own_hashes = true;
-    Bytes& out = gofs.empty() ? model : gofs.back().units;
+    Bytes& out = gofs.empty() ? rig : gofs.back().units;
     out.insert(out.end(), bytes.begin(), bytes.end());
     if (unit.temporal_layer_idx == 0) continue;
     std::vector<std::uint64_t>& of_layer = gofs.back().layer_bytes;

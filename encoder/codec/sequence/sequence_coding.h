@@ -63,10 +63,10 @@ class SequenceCoding {
   bool has_last_resort() const { return last_resort_ != nullptr; }
   // Keeps a reference to the frames. is_last_resort: use only that further kind.
   std::unique_ptr<SpanCoder> make_coder(const SpanFrames& frames, bool is_last_resort) const;
-  // Whether spans can use skinned models of earlier ones.
-  bool has_models() const { return settings_.profile == Profile::kHigh; }
-  // KindEncoder::encode_with(), by the kind that has skinned models.
-  std::optional<EncodedSpan> encode_with(const KeptModel& model, const SpanFrames& frames,
+  // Whether spans can use shared rigs of earlier ones.
+  bool has_rigs() const { return settings_.profile == Profile::kHigh; }
+  // KindEncoder::encode_with(), by the kind that has shared rigs.
+  std::optional<EncodedSpan> encode_with(const KeptRig& rig, const SpanFrames& frames,
                                          double step, double most) const;
   // Whether the target is the largest error.
   bool has_largest_error() const { return settings_.target.kind == Target::kMaxError; }

@@ -280,7 +280,7 @@ std::uint64_t SequenceEncoder::total_bytes(const TargetResult& result) {
 }
 
 // A rate is that of the whole stream. What a search does not know, the size of attributes that
-// are predicted from the first frame and of skinned models in the index, is reserved after it.
+// are predicted from the first frame and of shared rigs in the index, is reserved after it.
 std::optional<InputError> SequenceEncoder::keep_to_rate(TargetResult& best) {
   constexpr int kMostSearches = 3;  // fixed: what is reserved hardly changes
   const SequenceHeader& header = coding_->header();

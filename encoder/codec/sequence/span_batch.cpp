@@ -46,13 +46,13 @@ void count_patterns(const std::vector<InterChoice>& choices,
 SpanBatch::SpanBatch(const SequenceCoding& coding, FrameSource& source,
                      const std::vector<FrameRange>& spans, const Options& options)
     : coding_(coding), source_(source), options_(options), spans_(spans.size()) {
-  if (!coding.has_models()) options_.has_followers = false;
+  if (!coding.has_rigs()) options_.has_followers = false;
   for (std::size_t g = 0; g < spans.size(); ++g) {
     Span& span = spans_[g];
     span.range = spans[g];
-    if (!coding.has_models()) continue;
+    if (!coding.has_rigs()) continue;
     span.has_followers = options.has_followers || g + 1 < spans.size();
-    if (g > 0 || options.model) span.vertices = Vertices::kUndecided;
+    if (g > 0 || options.rig) span.vertices = Vertices::kUndecided;
   }
 }
 
@@ -76,13 +76,13 @@ void SpanBatch::choose_again() {
   for (Span& span : spans_) span.coder.reset();
 }
 
-bool SpanBatch::uses_earlier_models() const {
+bool SpanBatch::uses_earlier_rigs() const {
   return std::any_of(spans_.begin(), spans_.end(),
                      [](const Span& span) { return span.vertices == Vertices::kOfEarlier; });
 }
 
-bool SpanBatch::use_own_models() {
-  const bool changed = uses_earlier_models();
+bool SpanBatch::use_own_rigs() {
+  const bool changed = uses_earlier_rigs();
   for (Span& span : spans_) span.vertices = Vertices::kOwn;
   return changed;
 }
@@ -165,7 +165,7 @@ InputResult<SpanBatch::MeasuredSpan> SpanBatch::measure(Span& span,
   }
   return MeasuredSpan{{std::move(gofs), LevelNeeds(encoded), encoded.clusters,
                        encoded.components, options_.keep_decoded ? encoded.frame : nullptr,
-                       encoded.model, encoded.cut, encoded.choices, std::move(kept)},
+                       encoded.rig, encoded.cut, encoded.choices, std::move(kept)},
                       std::move(metrics)};
 }
 
@@ -186,9 +186,9 @@ InputResult<SpanBatch::MeasuredSpan> SpanBatch::encode(Span& span, double step,
 
 // None: it costs at least `most`.
 InputResult<std::optional<SpanBatch::MeasuredSpan>> SpanBatch::encode_with(
-    const KeptModel& model, Span& span, double step, double most) {
+    const KeptRig& rig, Span& span, double step, double most) {
   if (auto error = read(span)) return *error;
-  const auto encoded = coding_.encode_with(model, span.frames, step, most);
+  const auto encoded = coding_.encode_with(rig, span.frames, step, most);
   span.frames = {};
   if (!encoded) return std::optional<MeasuredSpan>();
   auto measured = measure(span, *encoded);
@@ -197,24 +197,24 @@ InputResult<std::optional<SpanBatch::MeasuredSpan>> SpanBatch::encode_with(
 }
 
 // At equal step, if its cost is lower.
-bool SpanBatch::is_better(const MeasuredSpan& with_model, const MeasuredSpan& own) const {
+bool SpanBatch::is_better(const MeasuredSpan& with_rig, const MeasuredSpan& own) const {
   const std::uint32_t level_idc = coding_.header().level_idc;
   const auto level = [&](const MeasuredSpan& span) {
     return span.coded.needs.level_from(level_idc).value_or(kMaxLevelIdc + 1);
   };
-  if (level(with_model) > level(own)) return false;
+  if (level(with_rig) > level(own)) return false;
   // The Lagrangian cost does not predict the largest error.
   return !coding_.has_largest_error() ||
-         with_model.metrics.result().max_error <= own.metrics.result().max_error;
+         with_rig.metrics.result().max_error <= own.metrics.result().max_error;
 }
 
-// Encodes a span with an earlier model, and keeps whichever is better.
-std::optional<InputError> SpanBatch::decide(const std::shared_ptr<const KeptModel>& model,
+// Encodes a span with an earlier rig, and keeps whichever is better.
+std::optional<InputError> SpanBatch::decide(const std::shared_ptr<const KeptRig>& rig,
                                             Span& span, double step,
                                             std::optional<MeasuredSpan>& measured) {
   span.vertices = Vertices::kOwn;
-  if (!model) return std::nullopt;
-  auto other = encode_with(*model, span, step, measured->cost);
+  if (!rig) return std::nullopt;
+  auto other = encode_with(*rig, span, step, measured->cost);
   if (!other) return other.error();
   if (!*other || !is_better(**other, *measured)) return std::nullopt;
   measured = std::move(*other);
@@ -225,10 +225,10 @@ std::optional<InputError> SpanBatch::decide(const std::shared_ptr<const KeptMode
 
 // Encodes some spans. Those with vertices of their own do not depend on others, and come first.
 //
-//   model  in force before them; then, after them
+//   rig  in force before them; then, after them
 std::optional<InputError> SpanBatch::encode_some(SpanRange spans, double step,
                                                  double analysis_step,
-                                                 std::shared_ptr<const KeptModel>& model,
+                                                 std::shared_ptr<const KeptRig>& rig,
                                                  Measured& measured) {
   const auto encode_own = [&](std::size_t i) -> std::optional<InputError> {
     Span& span = spans_[spans.first + i];
@@ -240,26 +240,26 @@ std::optional<InputError> SpanBatch::encode_some(SpanRange spans, double step,
     return std::nullopt;
   };
   if (auto error = for_each_span(spans.count, encode_own)) return error;
-  Models models(spans.count);
+  Rigs rigs(spans.count);
   for (std::uint32_t i = 0; i < spans.count; ++i) {
     const std::size_t g = spans.first + i;
     if (spans_[g].vertices == Vertices::kOfEarlier) {
-      models[i] = model;
+      rigs[i] = rig;
       continue;
     }
     if (spans_[g].vertices == Vertices::kUndecided) {
-      if (auto error = decide(model, spans_[g], step, measured[g])) return error;
+      if (auto error = decide(rig, spans_[g], step, measured[g])) return error;
     }
-    if (measured[g]->coded.model) model = measured[g]->coded.model;
-    if (!options_.keep_decoded) measured[g]->coded.model.reset();
+    if (measured[g]->coded.rig) rig = measured[g]->coded.rig;
+    if (!options_.keep_decoded) measured[g]->coded.rig.reset();
   }
   return for_each_span(spans.count, [&](std::size_t i) -> std::optional<InputError> {
-    if (!models[i]) return std::nullopt;
+    if (!rigs[i]) return std::nullopt;
     Span& span = spans_[spans.first + i];
-    auto with_model =
-        encode_with(*models[i], span, step, std::numeric_limits<double>::infinity());
-    if (!with_model) return with_model.error();
-    measured[spans.first + i] = std::move(*with_model);
+    auto with_rig =
+        encode_with(*rigs[i], span, step, std::numeric_limits<double>::infinity());
+    if (!with_rig) return with_rig.error();
+    measured[spans.first + i] = std::move(*with_rig);
     set_done(span, 1.0);
     return std::nullopt;
   });
@@ -269,12 +269,12 @@ InputResult<BatchTrial> SpanBatch::encode(double step, double analysis_step,
                                           const Progress& progress) {
   Measured measured(spans_.size());
   progress_ = progress;
-  std::shared_ptr<const KeptModel> model = options_.model;
+  std::shared_ptr<const KeptRig> rig = options_.rig;
   const auto num_spans = static_cast<std::uint32_t>(spans_.size());
-  const std::uint32_t together = coding_.has_models() ? options_.together : num_spans;
+  const std::uint32_t together = coding_.has_rigs() ? options_.together : num_spans;
   for (std::uint32_t first = 0; first < num_spans; first += together) {
     const SpanRange spans{first, std::min(together, num_spans - first)};
-    if (auto error = encode_some(spans, step, analysis_step, model, measured)) {
+    if (auto error = encode_some(spans, step, analysis_step, rig, measured)) {
       return *error;
     }
   }

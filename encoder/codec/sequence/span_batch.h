@@ -26,8 +26,8 @@ struct SpanResult {
   std::uint32_t clusters = 0;    // of all GOFs
   std::uint32_t components = 0;  // of all GOFs
   DecodeFrame frame;             // empty unless Options::keep_decoded
-  // The skinned model that it brings; null: none, or Options::keep_decoded is not set.
-  std::shared_ptr<const KeptModel> model;
+  // The shared rig that it brings; null: none, or Options::keep_decoded is not set.
+  std::shared_ptr<const KeptRig> rig;
   DecodeCut cut;                     // of GOFs with one temporal layer: empty
   std::vector<InterChoice> choices;  // of each GOF of frames
   // Frames of the sequence that Options::kept_frames lists, ascending.
@@ -49,12 +49,12 @@ class SpanBatch {
   struct Options {
     std::uint32_t first_frame = 0;  // position in the stream of frame 0 of the source
     bool keep_analyses = true;      // from one encode() to the next; choices are always kept
-    bool keep_decoded = false;      // set SpanResult::frame and model
+    bool keep_decoded = false;      // set SpanResult::frame and rig
     std::vector<std::uint32_t> kept_frames{};  // of the stream, ascending: SpanResult::kept
-    // The skinned model in force before the batch; null: none.
-    std::shared_ptr<const KeptModel> model = nullptr;
-    bool has_followers = false;  // further batches may use the model in force after it
-    // Spans that are encoded at a time, where later ones may use skinned models of earlier
+    // The shared rig in force before the batch; null: none.
+    std::shared_ptr<const KeptRig> rig = nullptr;
+    bool has_followers = false;  // further batches may use the rig in force after it
+    // Spans that are encoded at a time, where later ones may use shared rigs of earlier
     // ones. Affects memory only.
     std::uint32_t together = 1;
     MetricsAccumulator::Keep metrics = MetricsAccumulator::kFrames;
@@ -70,10 +70,10 @@ class SpanBatch {
   bool use_last_resort();
   // Forgets what was chosen at earlier steps: the next one decides.
   void choose_again();
-  // Whether some spans use skinned models of earlier ones.
-  bool uses_earlier_models() const;
-  // From now on, each span has a skinned model of its own. False: so it was before.
-  bool use_own_models();
+  // Whether some spans use shared rigs of earlier ones.
+  bool uses_earlier_rigs() const;
+  // From now on, each span has a shared rig of its own. False: so it was before.
+  bool use_own_rigs();
   // Called now and then with the fraction done of the analyses and the encoding that follows;
   // by any thread, one at a time.
   using Progress = std::function<void(double)>;
@@ -92,7 +92,7 @@ class SpanBatch {
 
   struct Span {
     FrameRange range{};
-    bool has_followers = false;  // later spans may use its skinned model
+    bool has_followers = false;  // later spans may use its shared rig
     SpanFrames frames;           // empty while they are not needed
     std::unique_ptr<SpanCoder> coder;
     Vertices vertices = Vertices::kOwn;
@@ -111,20 +111,20 @@ class SpanBatch {
     double cost = 0.0;  // Lagrangian, if it is not decided whose vertices the span has
   };
   using Measured = std::vector<std::optional<MeasuredSpan>>;  // [span]
-  using Models = std::vector<std::shared_ptr<const KeptModel>>;
+  using Rigs = std::vector<std::shared_ptr<const KeptRig>>;
 
   void set_done(Span& span, double done);
   std::optional<InputError> read(Span& span);
   std::optional<InputError> prepare(Span& span, double step, double analysis_step);
   InputResult<MeasuredSpan> measure(Span& span, const EncodedSpan& encoded);
   InputResult<MeasuredSpan> encode(Span& span, double step, double analysis_step);
-  InputResult<std::optional<MeasuredSpan>> encode_with(const KeptModel& model, Span& span,
+  InputResult<std::optional<MeasuredSpan>> encode_with(const KeptRig& rig, Span& span,
                                                        double step, double most);
-  std::optional<InputError> decide(const std::shared_ptr<const KeptModel>& model, Span& span,
+  std::optional<InputError> decide(const std::shared_ptr<const KeptRig>& rig, Span& span,
                                    double step, std::optional<MeasuredSpan>& measured);
-  bool is_better(const MeasuredSpan& with_model, const MeasuredSpan& own) const;
+  bool is_better(const MeasuredSpan& with_rig, const MeasuredSpan& own) const;
   std::optional<InputError> encode_some(SpanRange spans, double step, double analysis_step,
-                                        std::shared_ptr<const KeptModel>& model,
+                                        std::shared_ptr<const KeptRig>& rig,
                                         Measured& measured);
 
   const SequenceCoding& coding_;

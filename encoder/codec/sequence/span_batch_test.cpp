@@ -122,7 +122,7 @@ EncoderSettings high_settings() {
 
 // In the High profile, spans follow each other; how many are encoded at a time, and on how many
 // threads, affects time and memory only.
-TEST(SpanBatch, LaterSpansUseModelsOfEarlierOnes) {
+TEST(SpanBatch, LaterSpansUseRigsOfEarlierOnes) {
   const EncoderSettings settings = high_settings();
   WavingStrip source(96);
   const SequenceCoding coding(header_of(source, settings), settings, source.triangles());
@@ -131,45 +131,45 @@ TEST(SpanBatch, LaterSpansUseModelsOfEarlierOnes) {
   for (const std::uint32_t together : {1U, 2U, 4U, 1U}) {
     const Threads threads(first.empty() ? 1 : 2);
     SpanBatch batch(coding, source, spans, {.together = together});
-    EXPECT_FALSE(batch.uses_earlier_models());
+    EXPECT_FALSE(batch.uses_earlier_rigs());
     std::vector<std::vector<std::uint8_t>> bytes;
     for (const double step : {2000.0, 1800.0}) {
       const auto trial = batch.encode(step, step, {});
       ASSERT_TRUE(trial);
-      EXPECT_TRUE(batch.uses_earlier_models());
-      EXPECT_FALSE(trial->gofs[0].gofs[0].model.empty());
+      EXPECT_TRUE(batch.uses_earlier_rigs());
+      EXPECT_FALSE(trial->gofs[0].gofs[0].rig.empty());
       EXPECT_EQ(trial->gofs[1].gofs.size(), 2U);
       for (const SpanResult& span : trial->gofs) {
-        EXPECT_FALSE(span.model);
+        EXPECT_FALSE(span.rig);
         for (const GofBytes& gof : span.gofs) {
-          bytes.push_back(gof.model);
+          bytes.push_back(gof.rig);
           bytes.push_back(gof.units);
         }
       }
     }
     if (first.empty()) first = bytes;
     EXPECT_EQ(bytes, first) << together;
-    EXPECT_TRUE(batch.use_own_models());
-    EXPECT_FALSE(batch.uses_earlier_models());
-    EXPECT_FALSE(batch.use_own_models());
+    EXPECT_TRUE(batch.use_own_rigs());
+    EXPECT_FALSE(batch.uses_earlier_rigs());
+    EXPECT_FALSE(batch.use_own_rigs());
   }
 }
 
-// A batch can start from the model of the one before.
-TEST(SpanBatch, TakesTheModelInForce) {
+// A batch can start from the rig of the one before.
+TEST(SpanBatch, TakesTheRigInForce) {
   const EncoderSettings settings = high_settings();
   WavingStrip source(48);
   const SequenceCoding coding(header_of(source, settings), settings, source.triangles());
   SpanBatch before(coding, source, {{0, 24}}, {.keep_decoded = true, .has_followers = true});
   const auto first = before.encode(2000.0, 2000.0, {});
   ASSERT_TRUE(first);
-  ASSERT_TRUE(first->gofs[0].model);
+  ASSERT_TRUE(first->gofs[0].rig);
   SpanBatch after(coding, source, {{24, 24}},
-                  {.keep_decoded = true, .model = first->gofs[0].model});
+                  {.keep_decoded = true, .rig = first->gofs[0].rig});
   const auto second = after.encode(2000.0, 2000.0, {});
   ASSERT_TRUE(second);
-  EXPECT_TRUE(after.uses_earlier_models());
-  EXPECT_FALSE(second->gofs[0].model);
+  EXPECT_TRUE(after.uses_earlier_rigs());
+  EXPECT_FALSE(second->gofs[0].rig);
   SpanBatch alone(coding, source, {{24, 24}}, {});
   EXPECT_LT(second->gof_bytes, alone.encode(2000.0, 2000.0, {})->gof_bytes);
 }

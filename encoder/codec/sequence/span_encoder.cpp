@@ -123,7 +123,7 @@ InputResult<TargetResult> SpanEncoder::search(const FrameRange& span, double rms
                   {.first_frame = span.first,
                    .keep_decoded = true,
                    .kept_frames = attributes_->frames(),
-                   .model = model_,
+                   .rig = rig_,
                    .has_followers = is_open_ended() || coded_.spans + 1 < spans_.size(),
                    .metrics = MetricsAccumulator::kTotals});
   auto best = reach_target({.settings = settings_,
@@ -201,7 +201,7 @@ std::optional<InputError> SpanEncoder::encode_span() {
         coding_->measure(source, frames, coded.cut(static_cast<int>(i) + 1), coded_.cuts[i]);
     if (!cut) return cut.error();
   }
-  if (coded.model) model_ = coded.model;
+  if (coded.rig) rig_ = coded.rig;
   if (auto error = write(coded)) return error;
   ++coded_.spans;
   num_held_ = 0;

@@ -76,7 +76,7 @@ class SpanEncoder final : public FrameBackend {
   std::optional<StreamAssembly> stream_;  // from the first span on
   std::optional<AttributeStage> attributes_;
   std::optional<SpanBuffer> buffer_;
-  std::shared_ptr<const KeptModel> model_;  // in force after the last span; null: none
+  std::shared_ptr<const KeptRig> rig_;  // in force after the last span; null: none
   std::uint32_t num_added_ = 0;
   std::uint32_t num_held_ = 0;  // in the buffer
   std::uint32_t longest_gof_ = 0;

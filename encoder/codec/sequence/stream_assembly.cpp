@@ -80,10 +80,10 @@ bool StreamAssembly::write_lead(const SequenceHeader& header, const ByteSink& si
 }
 
 bool StreamAssembly::write_gof(const GofBytes& gof, const ByteSink& sink) {
-  gof_bytes_ += gof.model.size() + gof.units.size();
+  gof_bytes_ += gof.rig.size() + gof.units.size();
   hash_bytes_ += gof.hash_unit.size();
-  if (!gof.model.empty()) index_.models.push_back({kModelIdx, written_});
-  const std::uint64_t offset = written_ + gof.model.size();
+  if (!gof.rig.empty()) index_.rigs.push_back({kRigIdx, written_});
+  const std::uint64_t offset = written_ + gof.rig.size();
   if (index_.gofs.empty()) {
     index_.first_gof_offset = offset;
   } else {
@@ -93,7 +93,7 @@ bool StreamAssembly::write_gof(const GofBytes& gof, const ByteSink& sink) {
   layer_bytes_.push_back(gof.layer_bytes);
   index_.gofs.push_back({gof.num_frames, gof.units.size() + gof.hash_unit.size()});
   num_frames_ += gof.num_frames;
-  return put(gof.model, sink) && put(gof.units, sink) && put(gof.hash_unit, sink);
+  return put(gof.rig, sink) && put(gof.units, sink) && put(gof.hash_unit, sink);
 }
 
 bool StreamAssembly::begin_gof(const Bytes& gof_unit, const ByteSink& sink) {
@@ -127,12 +127,12 @@ bool StreamAssembly::write_end(const ByteSink& sink) {
 std::uint64_t StreamAssembly::cut_bytes(std::size_t layers) const {
   GofIndexEntries index = index_;
   std::uint64_t removed = 0;
-  auto model = index.models.begin();
+  auto rig = index.rigs.begin();
   std::uint64_t offset = index_.first_gof_offset;  // of the GOF, in the whole stream
   for (std::size_t g = 0; g < index.gofs.size(); ++g) {
-    // A skinned model comes before the first GOF that uses it.
-    for (; model != index.models.end() && model->offset < offset; ++model) {
-      model->offset -= removed;
+    // A shared rig comes before the first GOF that uses it.
+    for (; rig != index.rigs.end() && rig->offset < offset; ++rig) {
+      rig->offset -= removed;
     }
     std::uint64_t of_gof = 0;
     for (std::size_t layer = layers; layer <= layer_bytes_[g].size(); ++layer) {

@@ -15,7 +15,7 @@ namespace rlpc {
 // The units of one GOF as bytes of a stream.
 struct GofBytes {
   std::uint32_t num_frames = 0;
-  Bytes model;      // the skinned model that comes before it, and its slices; empty: none
+  Bytes rig;      // the shared rig that comes before it, and its slices; empty: none
   Bytes units;      // GOF unit and slices
   Bytes hash_unit;  // empty: none
   // The GOF has hashes in its frame units, and there must be no hash unit (7.2).
@@ -23,7 +23,7 @@ struct GofBytes {
   // Bytes of the slices or frame units of each temporal layer besides the first.
   std::vector<std::uint64_t> layer_bytes;
 
-  std::uint64_t size() const { return model.size() + units.size() + hash_unit.size(); }
+  std::uint64_t size() const { return rig.size() + units.size() + hash_unit.size(); }
 };
 
 class StreamAssembly {
@@ -36,7 +36,7 @@ class StreamAssembly {
 
   // Size of everything but GOFs, hashes and index.
   std::uint64_t overhead_bytes() const { return lead_bytes_ + end_bytes_; }
-  // Size of the index of a stream with these GOFs and no skinned models; 0 if it would have no
+  // Size of the index of a stream with these GOFs and no shared rigs; 0 if it would have no
   // index.
   std::uint64_t index_bytes(std::vector<GofEntry> gofs) const;
 

@@ -85,9 +85,9 @@ InputResult<TargetResult> search_steps(const TargetTask& task, SpanBatch& batch,
     if (!trial) return trial.error();
     const double value = measured(task, *trial, batch.num_frames());
     const bool better = search.report(value, trial->gof_bytes, expected_kg(task, batch));
-    // Bones, rest positions and factors of earlier models do not follow the step.
+    // Bones, rest positions and factors of earlier rigs do not follow the step.
     const bool is_stuck =
-        !search.met() && batch.uses_earlier_models() && trial->gof_bytes == bytes;
+        !search.met() && batch.uses_earlier_rigs() && trial->gof_bytes == bytes;
     bytes = trial->gof_bytes;
     const bool is_hopeless = task.rival && task.rival->is_out_of_reach(*trial, 0, kFarAll);
     if (better || !best) best = TargetResult{std::move(*trial), search.last_step(), value};
@@ -137,7 +137,7 @@ InputResult<TargetResult> reach_target(const TargetTask& task, SpanBatch& batch)
     if (closer && fits_level(task, other->trial)) best = std::move(other);
     best->trials = trials;
   };
-  if (is_missed() && batch.use_own_models()) search_again(task);
+  if (is_missed() && batch.use_own_rigs()) search_again(task);
   if (is_missed() && task.settings.target.kind == Target::kBpvf) {
     // Clusters and components that were chosen at a fine step can need more bits than a low
     // rate has, at any step.

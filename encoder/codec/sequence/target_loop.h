@@ -39,7 +39,7 @@ struct TargetResult {
   bool given_up = false;  // the search, as it had no prospect of beating the rival
 };
 
-// Runs the search. If it misses the target, searches again without skinned models of earlier
+// Runs the search. If it misses the target, searches again without shared rigs of earlier
 // spans; then, for a rate, with what is chosen at the last step; then with the last resort of
 // the batch. Errors: those of the batch.
 InputResult<TargetResult> reach_target(const TargetTask& task, SpanBatch& batch);

@@ -23,9 +23,9 @@ class KindEncoder {
   //
   //   components  that the likeliest kind is expected to need
   virtual bool may_win(const SpanFrames& frames, std::uint32_t components) const = 0;
-  // Encodes the frames with the skinned model of an earlier span. None: that costs at least
-  // `most`, or is expected to, or the kind has no models.
-  virtual std::optional<EncodedSpan> encode_with(const KeptModel& /*model*/,
+  // Encodes the frames with the shared rig of an earlier span. None: that costs at least
+  // `most`, or is expected to, or the kind has no rigs.
+  virtual std::optional<EncodedSpan> encode_with(const KeptRig& /*rig*/,
                                                  const SpanFrames& /*frames*/, double /*step*/,
                                                  double /*most*/) const {
     return std::nullopt;

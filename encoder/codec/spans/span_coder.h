@@ -1,5 +1,5 @@
 // The interface that encodes a span of frames at varying quantiser steps, for all kinds of GOF.
-// A span is one GOF, or in the High profile, several that can share a skinned model.
+// A span is one GOF, or in the High profile, several that can share a shared rig.
 #pragma once
 
 #include <cstdint>
@@ -34,11 +34,11 @@ constexpr bool is_within(double factor, double a, double b) {
   return a < factor * b && b < factor * a;
 }
 
-// The model_idx of all skinned models: each replaces the one before.
-inline constexpr std::uint32_t kModelIdx = 0;  // fixed: any would do
+// The rig_idx of all shared rigs: each replaces the one before.
+inline constexpr std::uint32_t kRigIdx = 0;  // fixed: any would do
 
-// A skinned model as it was coded, with all that later spans need to use it.
-struct KeptModel;
+// A shared rig as it was coded, with all that later spans need to use it.
+struct KeptRig;
 
 // What has been chosen for a GOF of frames.
 struct InterChoice {
@@ -56,13 +56,13 @@ struct EncodedSpan {
     std::vector<std::uint8_t> payload;
     std::uint32_t temporal_layer_idx = 0;  // of a slice or frame unit
   };
-  // In the order of the stream: a skinned model and its slices, if the GOFs use one; then each
+  // In the order of the stream: a shared rig and its slices, if the GOFs use one; then each
   // GOF unit, with its slices.
   std::vector<Unit> units;
   DecodeFrame frame;
   DecodeCut cut;  // empty: there is one temporal layer
-  // The skinned model among the units, if later spans may use it; otherwise null.
-  std::shared_ptr<const KeptModel> model;
+  // The shared rig among the units, if later spans may use it; otherwise null.
+  std::shared_ptr<const KeptRig> rig;
   // The squared error of all frames, in squared grid steps; none: not known.
   std::optional<double> squared_error;
   std::vector<InterChoice> choices;   // of each GOF of frames

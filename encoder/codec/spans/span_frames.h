@@ -20,7 +20,7 @@ struct SpanFrames {
   std::vector<double> xyz;        // [num_frames][num_vertices][3], decoded vertex order
   std::uint32_t first_frame = 0;  // in the sequence
   std::uint32_t num_gofs = 1;     // GOFs that the span is divided into
-  bool has_followers = false;     // later spans may use the skinned model of this one
+  bool has_followers = false;     // later spans may use the shared rig of this one
 
   // The GOFs, with frames counted from the start of the span.
   std::vector<FrameRange> gofs() const { return equal_ranges(num_frames, num_gofs); }

@@ -149,7 +149,7 @@ void SetWriter::write_triangle_values(const CodedAttributeSet& set) {
     bool is_found = false;
     for (std::size_t i = 0; i < candidates.size() && !is_found; ++i) {
       is_found = std::ranges::equal(value_of(candidates[i]), value_of(t));
-      section_.bin(contexts.same_model(i), is_found);
+      section_.bin(contexts.same_rig(i), is_found);
     }
     for (std::uint32_t c = 0; c < n && !is_found; ++c) {
       const std::uint32_t prediction = candidates.empty() ? 0 : value_of(candidates[0])[c];

@@ -19,26 +19,26 @@
 namespace rlpc {
 namespace {
 
-enum class Unit : std::uint8_t { kGof, kModel, kTracks };
+enum class Unit : std::uint8_t { kGof, kRig, kTracks };
 
 // 6.11.1 bone_section( ), 6.13.1 track_section( )
-std::vector<std::uint8_t> write_bone_section(const SkinnedModel& model, Unit unit,
+std::vector<std::uint8_t> write_bone_section(const SharedRig& rig, Unit unit,
                                              const TrackFrames& frames, int position_bits) {
   SectionWriter section;
   BoneWriter writer(section, frames);
-  for (std::size_t b = 0; b < model.bones.size(); ++b) {
-    if (unit != Unit::kTracks) writer.bone(model.bones[b], b, position_bits);
-    if (unit != Unit::kModel) writer.tracks(model.bones[b]);
+  for (std::size_t b = 0; b < rig.bones.size(); ++b) {
+    if (unit != Unit::kTracks) writer.bone(rig.bones[b], b, position_bits);
+    if (unit != Unit::kRig) writer.tracks(rig.bones[b]);
   }
   return section.finish();
 }
 
-// 6.12 slice_unit( ): writes the slices of a GOF or skinned model in order.
+// 6.12 slice_unit( ): writes the slices of a GOF or shared rig in order.
 class SliceWriter {
  public:
-  // shared: the skinned model of a GOF of tracks.
-  SliceWriter(const SkinnedModel& gof, const OrderedMesh& mesh, Unit unit,
-              const TrackFrames& frames, const SkinnedModel* shared = nullptr)
+  // shared: the shared rig of a GOF of tracks.
+  SliceWriter(const SharedRig& gof, const OrderedMesh& mesh, Unit unit,
+              const TrackFrames& frames, const SharedRig* shared = nullptr)
       : gof_(gof),
         mesh_(mesh),
         unit_(unit),
@@ -61,7 +61,7 @@ class SliceWriter {
   std::size_t own_group(std::uint32_t group) const {
     return unit_ == Unit::kTracks ? group - gof_.num_component_groups : group;
   }
-  // The trajectories of a component group of the GOF or of its skinned model, from 1 on.
+  // The trajectories of a component group of the GOF or of its shared rig, from 1 on.
   FactorGroup tracks_of(std::uint32_t group) const {
     return shared_ != nullptr && group < first_own_group() ? factor_group(*shared_, group)
                                                            : factors(group);
@@ -81,11 +81,11 @@ class SliceWriter {
   void spatial_residuals(SectionWriter& section, std::uint32_t v, std::uint32_t group);
   void rest_residuals(SectionWriter& section);
 
-  const SkinnedModel& gof_;
+  const SharedRig& gof_;
   const OrderedMesh& mesh_;
   Unit unit_;
   TrackFrames frames_;
-  const SkinnedModel* shared_;
+  const SharedRig* shared_;
   SliceModels models_;
   Trajectory previous_;
   std::vector<std::uint32_t> trajectory_mean_;
@@ -143,7 +143,7 @@ void SliceWriter::group_components(SectionWriter& section, std::uint32_t group) 
   header_value(section, HeaderField::kNumComponents, static_cast<int>(of_group.size()), 1);
   for (std::size_t l = of_group.first; l < of_group.end; ++l) {
     const Trajectory& next = gof_.trajectories[l - kRestFactors];
-    const bool has_tracks = unit_ != Unit::kModel;
+    const bool has_tracks = unit_ != Unit::kRig;
     if (has_tracks) {
       header_value(section, HeaderField::kScaleIdx, next.scale_idx, previous_.scale_idx);
     }
@@ -269,7 +269,7 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
   return w.take();
 }
 
-// Of a GOF of tracks, slice_layers says of the groups of the skinned model only whether they
+// Of a GOF of tracks, slice_layers says of the groups of the shared rig only whether they
 // have a slice.
 SkinnedGofPayloads SliceWriter::write_all(std::vector<std::uint8_t> first,
                                           std::span<const std::uint32_t> temporal_layers) {
@@ -301,22 +301,22 @@ void write_levels_of_tracks(BitWriter& w, const TrackFrames& frames) {
 }
 
 // 6.11 rig_header( )
-void write_rig_header(BitWriter& w, const SkinnedModel& model, std::uint32_t profile_idc) {
-  w.ue(static_cast<std::uint32_t>(model.bones.size()) - 1);
-  w.u(5, static_cast<std::uint32_t>(model.fraction_bits));
-  w.u(3, static_cast<std::uint32_t>(model.weight_bits));
-  w.ue(model.rest_step - 1);
-  w.ue(model.num_component_groups);
-  w.u(2, static_cast<std::uint32_t>(model.prediction));
-  if (model.prediction == Prediction::kLayers) {
-    w.u(4, static_cast<std::uint32_t>(model.weights.damping_log2));
-    w.u(4, static_cast<std::uint32_t>(model.weights.outer_weight));
-    w.u(4, static_cast<std::uint32_t>(model.weights.outer_scale));
-    if (profile_idc >= kProfileHigh) w.ue(model.weights.num_adaptive_factors);
-    write_layer_groups(w, model.layer_group_size);
-    write_layer_steps(w, model.layer_step);
+void write_rig_header(BitWriter& w, const SharedRig& rig, std::uint32_t profile_idc) {
+  w.ue(static_cast<std::uint32_t>(rig.bones.size()) - 1);
+  w.u(5, static_cast<std::uint32_t>(rig.fraction_bits));
+  w.u(3, static_cast<std::uint32_t>(rig.weight_bits));
+  w.ue(rig.rest_step - 1);
+  w.ue(rig.num_component_groups);
+  w.u(2, static_cast<std::uint32_t>(rig.prediction));
+  if (rig.prediction == Prediction::kLayers) {
+    w.u(4, static_cast<std::uint32_t>(rig.weights.damping_log2));
+    w.u(4, static_cast<std::uint32_t>(rig.weights.outer_weight));
+    w.u(4, static_cast<std::uint32_t>(rig.weights.outer_scale));
+    if (profile_idc >= kProfileHigh) w.ue(rig.weights.num_adaptive_factors);
+    write_layer_groups(w, rig.layer_group_size);
+    write_layer_steps(w, rig.layer_step);
   }
-  if (profile_idc >= kProfileHigh) write_rest_settings(w, model.rest);
+  if (profile_idc >= kProfileHigh) write_rest_settings(w, rig.rest);
 }
 
 }  // namespace
@@ -333,14 +333,14 @@ SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const OrderedMesh& m
   return SliceWriter(gof, mesh, Unit::kGof, frames).write_all(w.take(), gof.temporal_layers);
 }
 
-SkinnedGofPayloads write_skinned_model(const SkinnedModel& model, std::uint32_t model_idx,
+SkinnedGofPayloads write_shared_rig(const SharedRig& rig, std::uint32_t rig_idx,
                                        const OrderedMesh& mesh, const SequenceHeader& header) {
   BitWriter w;
-  w.u(3, model_idx);
-  write_rig_header(w, model, header.profile_idc);
+  w.u(3, rig_idx);
+  write_rig_header(w, rig, header.profile_idc);
   w.byte_alignment();
-  w.append(write_bone_section(model, Unit::kModel, {}, header.position_bits));
-  return SliceWriter(model, mesh, Unit::kModel, {}).write_all(w.take());
+  w.append(write_bone_section(rig, Unit::kRig, {}, header.position_bits));
+  return SliceWriter(rig, mesh, Unit::kRig, {}).write_all(w.take());
 }
 
 SkinnedGofPayloads write_tracks(const SkinnedGof& gof, const OrderedMesh& mesh,
@@ -348,12 +348,12 @@ SkinnedGofPayloads write_tracks(const SkinnedGof& gof, const OrderedMesh& mesh,
   BitWriter w;
   const TrackFrames frames = track_frames(gof);
   write_gof_header(w, gof, header.profile_idc);
-  w.u(3, gof.model_idx);
+  w.u(3, gof.rig_idx);
   write_levels_of_tracks(w, frames);
   w.ue(gof.num_local_groups);
   w.byte_alignment();
   w.append(write_bone_section(gof, Unit::kTracks, frames, header.position_bits));
-  return SliceWriter(gof, mesh, Unit::kTracks, frames, gof.model.get())
+  return SliceWriter(gof, mesh, Unit::kTracks, frames, gof.rig.get())
       .write_all(w.take(), gof.temporal_layers);
 }
 

@@ -1,4 +1,4 @@
-// 6.11 to 6.13 Skinned GOFs, skinned models and their slices, writing side.
+// 6.11 to 6.13 Skinned GOFs, shared rigs and their slices, writing side.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// Payloads of a GOF or skinned model unit, and of its slice units.
+// Payloads of a GOF or rig unit, and of its slice units.
 struct SkinnedGofPayloads {
   std::vector<std::uint8_t> first;
   std::vector<std::vector<std::uint8_t>> slices;
@@ -22,8 +22,8 @@ struct SkinnedGofPayloads {
 // 6.11 bones_of_gof( )
 SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const OrderedMesh& mesh,
                                      const SequenceHeader& header);
-// 6.13 model( )
-SkinnedGofPayloads write_skinned_model(const SkinnedModel& model, std::uint32_t model_idx,
+// 6.13 rig( )
+SkinnedGofPayloads write_shared_rig(const SharedRig& rig, std::uint32_t rig_idx,
                                        const OrderedMesh& mesh, const SequenceHeader& header);
 // 6.13.1 tracks_of_gof( )
 SkinnedGofPayloads write_tracks(const SkinnedGof& gof, const OrderedMesh& mesh,

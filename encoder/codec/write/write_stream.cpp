@@ -65,12 +65,12 @@ Bytes write_sequence_header(const SequenceHeader& h) {
 // 6.6 vertex_order( )
 Bytes write_vertex_order(std::span<const std::uint32_t> output_vertex) {
   RangeEncoder re;
-  ResidualModels models;
+  ResidualModels rigs;
   std::uint32_t mean = 0;
   std::int64_t before = 0;
   for (const std::uint32_t index : output_vertex) {
     const auto delta = static_cast<std::int32_t>(index - before);
-    write_residual(re, models, mean >> 4, delta);
+    write_residual(re, rigs, mean >> 4, delta);
     mean = update_mean(mean, magnitude_of(delta), 3);
     before = index;
   }

@@ -1,4 +1,4 @@
-// 8.16.1: Models, the skinned models that are kept while a stream is decoded.
+// 8.16.1: Rigs, the shared rigs that are kept while a stream is decoded.
 #pragma once
 
 #include <array>
@@ -10,11 +10,11 @@
 
 namespace rlpc {
 
-// By model_idx; null: none. Copies share the models.
-struct ModelSlots {
-  std::array<std::shared_ptr<const SkinnedModel>, kMaxModels> of_idx;
+// By rig_idx; null: none. Copies share the rigs.
+struct RigSlots {
+  std::array<std::shared_ptr<const SharedRig>, kMaxRigs> of_idx;
 
-  // FactorsOfModels( other ); kMaxModels: of all.
+  // FactorsOfRigs( other ); kMaxRigs: of all.
   std::uint64_t num_factors(std::size_t other) const {
     std::uint64_t sum = 0;
     for (std::size_t m = 0; m < of_idx.size(); ++m) {

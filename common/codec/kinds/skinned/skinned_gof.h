@@ -1,4 +1,4 @@
-// 6.11 to 6.13: skinned GOFs and skinned models with their slices. Passed from the parser to
+// 6.11 to 6.13: skinned GOFs and shared rigs with their slices. Passed from the parser to
 // reconstruction, and from the analysis to the writer.
 #pragma once
 
@@ -21,7 +21,7 @@ namespace rlpc {
 
 inline constexpr std::uint32_t kMaxRestStep = 1U << 16;
 inline constexpr std::uint32_t kMaxComponentGroups = 255;
-inline constexpr std::uint32_t kMaxModels = 8;  // skinned models at a time
+inline constexpr std::uint32_t kMaxRigs = 8;  // shared rigs at a time
 inline constexpr int kMaxWeightBits = 7;
 inline constexpr std::uint32_t kMaxStepIdx = 239;
 inline constexpr int kMaxInfluences = 8;
@@ -82,10 +82,10 @@ struct Trajectory {
   bool operator==(const Trajectory&) const = default;
 };
 
-// 6.13: what has vertices in a skinned GOF. In a skinned model, bones and trajectories are
+// 6.13: what has vertices in a skinned GOF. In a shared rig, bones and trajectories are
 // without motion. Values of absent slices are zero; reconstruction then predicts the influences
 // (8.14.1).
-struct SkinnedModel {
+struct SharedRig {
   int fraction_bits = 0;
   int weight_bits = 0;
   std::uint32_t rest_step = 1;  // 1/16 grid units
@@ -108,10 +108,10 @@ struct SkinnedModel {
   Vector<Vector<std::int32_t>> vertex_residual;
   bool is_cut = false;  // slices were dropped on request (SliceCut)
 
-  bool operator==(const SkinnedModel&) const = default;
+  bool operator==(const SharedRig&) const = default;
 };
 
-struct SkinnedGof : GofHeader, SkinnedModel {
+struct SkinnedGof : GofHeader, SharedRig {
   SkinnedGof() { kind = GofKind::kSkinned; }
 
   int track_levels = 0;         // of hierarchical tracks, besides level 0; 0 to kMaxTrackLevels
@@ -119,13 +119,13 @@ struct SkinnedGof : GofHeader, SkinnedModel {
   // [group], the temporal layers besides the first of which it has a slice; empty if there are
   // none in the GOF. Residuals of absent slices are zero.
   Vector<std::uint32_t> temporal_layers;
-  // 6.13.1, of a GOF of tracks: the skinned model that it uses; null for other kinds. What has
+  // 6.13.1, of a GOF of tracks: the shared rig that it uses; null for other kinds. What has
   // vertices is then there. The settings, bones and leading trajectories of the GOF are those
-  // of the model, with their motion; slice_layers counts the component groups of both; and
+  // of the rig, with their motion; slice_layers counts the component groups of both; and
   // group_end and vertex_residual are those of the local component groups, with [0] as the end
-  // of the last group of the model.
-  std::shared_ptr<const SkinnedModel> model;
-  std::uint32_t model_idx = 0;
+  // of the last group of the rig.
+  std::shared_ptr<const SharedRig> rig;
+  std::uint32_t rig_idx = 0;
   std::uint32_t num_local_groups = 0;
 
   bool operator==(const SkinnedGof&) const = default;
@@ -135,19 +135,19 @@ inline TrackFrames track_frames(const SkinnedGof& gof) {
   return {gof.num_frames, gof.track_levels, gof.num_temporal_layers};
 }
 
-// Factors [first, end) of the spatial factors of a GOF or skinned model, as declared.
+// Factors [first, end) of the spatial factors of a GOF or shared rig, as declared.
 struct FactorGroup {
   std::size_t first = 0;
   std::size_t end = kRestFactors;
   std::size_t size() const { return end - first; }
 };
-inline FactorGroup factor_group(const SkinnedModel& model, std::size_t group) {
-  return {group == 0 ? 0 : model.group_end[group - 1], model.group_end[group]};
+inline FactorGroup factor_group(const SharedRig& rig, std::size_t group) {
+  return {group == 0 ? 0 : rig.group_end[group - 1], rig.group_end[group]};
 }
 
-// 8.16.1: what FactorsOfModels( ) counts for a skinned model.
-inline std::uint64_t num_factors(const SkinnedModel& model) {
-  return (kRestFactors + model.trajectories.size()) * model.influences.size();
+// 8.16.1: what FactorsOfRigs( ) counts for a shared rig.
+inline std::uint64_t num_factors(const SharedRig& rig) {
+  return (kRestFactors + rig.trajectories.size()) * rig.influences.size();
 }
 
 }  // namespace rlpc

@@ -188,7 +188,7 @@ void SetParser::parse_triangle_values(CodedAttributeSet& set) {
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     const auto candidates = contexts.find_candidates(t, set.residuals);
     std::size_t i = 0;
-    while (i < candidates.size() && !section_.bin(contexts.same_model(i), "same_value_flag")) {
+    while (i < candidates.size() && !section_.bin(contexts.same_rig(i), "same_value_flag")) {
       ++i;
     }
     for (std::uint32_t c = 0; c < n && !section_.failed(); ++c) {

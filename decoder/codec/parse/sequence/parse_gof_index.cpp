@@ -8,17 +8,17 @@ namespace {
 
 constexpr std::int64_t kAny = 0xFFFFFFFE;
 
-// 6.9 index_of_models( )
-Vector<ModelLocation> parse_models(BitReader& r, std::uint32_t num_frames) {
-  Vector<ModelLocation> models;
-  const std::uint32_t count = r.ue("num_index_models", {0, num_frames}, "R-IDX-05");
+// 6.9 index_of_rigs( )
+Vector<RigLocation> parse_rigs(BitReader& r, std::uint32_t num_frames) {
+  Vector<RigLocation> rigs;
+  const std::uint32_t count = r.ue("num_index_rigs", {0, num_frames}, "R-IDX-05");
   std::uint64_t offset = 0;
   for (std::uint32_t m = 0; m < count && !r.error(); ++m) {
-    const std::uint32_t model_idx = r.u(3, "index_model_idx");
-    offset += r.ue("index_model_distance", {0, kAny}, "R-IDX-02");
-    models.push_back({offset, model_idx});
+    const std::uint32_t rig_idx = r.u(3, "index_rig_idx");
+    offset += r.ue("index_rig_distance", {0, kAny}, "R-IDX-02");
+    rigs.push_back({offset, rig_idx});
   }
-  return models;
+  return rigs;
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ Result<GofIndex> parse_gof_index(BitReader& r, const SequenceHeader& header) {
     r.fail(Errc::kInvalid, "R-IDX-01", "num_index_gofs_minus1", r.bit_pos());
   }
   if (header.profile_idc >= kProfileHigh && !r.error()) {
-    index.models = parse_models(r, num_frames);
+    index.rigs = parse_rigs(r, num_frames);
   }
   r.byte_alignment();
   r.expect_end();

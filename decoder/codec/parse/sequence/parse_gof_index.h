@@ -15,15 +15,15 @@ struct GofLocation {
   std::uint32_t first_frame = 0;
 };
 
-// Of a skinned model unit.
-struct ModelLocation {
+// Of a rig unit.
+struct RigLocation {
   std::uint64_t offset = 0;
-  std::uint32_t model_idx = 0;
+  std::uint32_t rig_idx = 0;
 };
 
 struct GofIndex {
   Vector<GofLocation> gofs;
-  Vector<ModelLocation> models;
+  Vector<RigLocation> rigs;
 };
 
 // Offsets are not checked against the units here.

@@ -18,9 +18,9 @@ class SkinnedGofKind : public KindEncoder {
     return std::make_unique<SkinnedSpanCoder>(context_, frames);
   }
 
-  std::optional<EncodedSpan> encode_with(const KeptModel& model, const SpanFrames& frames,
+  std::optional<EncodedSpan> encode_with(const KeptRig& rig, const SpanFrames& frames,
                                          double step, double most) const override {
-    return encode_with_model(context_, model, frames, step, most);
+    return encode_with_rig(context_, rig, frames, step, most);
   }
 
   // Never called: if there are several kinds, this one comes first and is always encoded.

@@ -25,7 +25,7 @@ constexpr double kComponentsServe = 1.2;
 
 // The expected squared error of a trial at another step.
 double SkinnedSpanCoder::error_at(double step, const Draft& draft) {
-  if (draft.analysis.model.bones.size() > 1) {
+  if (draft.analysis.rig.bones.size() > 1) {
     return draft.error * det_exp2(kErrorPower * det_log2(step / draft.step));
   }
   return draft.error * expected_squared_error(draft.analysis, step) /

@@ -83,7 +83,7 @@ class Bracket {
   End coarse_;  // the last step that was too coarse
 };
 
-// Models measured values as a power of the step.
+// Rigs measured values as a power of the step.
 class PowerLaw {
  public:
   explicit PowerLaw(double usual_exponent) : usual_(usual_exponent), exponent_(usual_) {}

@@ -1,4 +1,4 @@
-#include "common/codec/kinds/skinned/recon/model_recon.h"
+#include "common/codec/kinds/skinned/recon/rig_recon.h"
 
 #include <algorithm>
 #include <numeric>
@@ -18,7 +18,7 @@ constexpr std::size_t kPadding = 3;  // kernels may read one vector past the end
 
 // The values of the factors of a group.
 struct ValueRecon {
-  const SkinnedModel& model;
+  const SharedRig& rig;
   std::span<const int> bits;  // [factor]
   std::span<const std::int32_t> residuals;
   const ValuePrediction& prediction;
@@ -32,7 +32,7 @@ struct ValueRecon {
     std::optional<VertexAdaptation> adaptation;
     if (weights != nullptr) adaptation.emplace(*weights);
     for (const std::uint32_t v : list) {
-      const int layer_step = model.layer_step[mesh.layer_of(v)];
+      const int layer_step = rig.layer_step[mesh.layer_of(v)];
       if (adaptation && adaptation->start(v, values)) {
         adaptive_values(v, layer_step, *adaptation);
       } else {
@@ -58,7 +58,7 @@ struct ValueRecon {
     const std::size_t n = bits.size();
     for (std::size_t k = 0; k < n; ++k) {
       const std::int32_t residual = residuals[v * n + k];
-      const std::int64_t difference = is_rest ? rest_difference(model, residual, layer_step)
+      const std::int64_t difference = is_rest ? rest_difference(rig, residual, layer_step)
                                               : factor_difference(residual, layer_step);
       values[v * n + k] = clip_signed(bits[k], predicted[k] + difference);
     }
@@ -68,18 +68,18 @@ struct ValueRecon {
 }  // namespace
 
 // 8.10.2 Spatial values
-Vector<std::int32_t> recon_values(const OrderedMesh& mesh, const SkinnedModel& model,
+Vector<std::int32_t> recon_values(const OrderedMesh& mesh, const SharedRig& rig,
                                   std::size_t group, int position_bits,
                                   const ValuePrediction& prediction, AdaptiveWeights* weights) {
-  const FactorGroup factors = factor_group(model, group);
-  const Vector<std::int32_t>& residuals = model.vertex_residual[group];
+  const FactorGroup factors = factor_group(rig, group);
+  const Vector<std::int32_t>& residuals = rig.vertex_residual[group];
   Vector<int> bits(factors.size(), rest_bits(position_bits));
   for (std::size_t k = 0; k < bits.size() && group > 0; ++k) {
-    bits[k] = model.trajectories[factors.first + k - kRestFactors].spatial_bits;
+    bits[k] = rig.trajectories[factors.first + k - kRestFactors].spatial_bits;
   }
   Vector<std::int32_t> values(residuals.size());
   if (weights != nullptr) weights->start(factors.first - kRestFactors, bits.size());
-  ValueRecon recon{model, bits, residuals, prediction, weights, group == 0, values};
+  ValueRecon recon{rig, bits, residuals, prediction, weights, group == 0, values};
   // Vertices of the base, or of a mesh without layers, are predicted from each other.
   recon.vertices(mesh, mesh.vertices_of_layers(0, 1));
   constexpr std::size_t kTogether = 16;  // vertices of a pass
@@ -92,12 +92,12 @@ Vector<std::int32_t> recon_values(const OrderedMesh& mesh, const SkinnedModel& m
   return values;
 }
 
-Vector<Influences> complete_influences(const OrderedMesh& mesh, const SkinnedModel& model) {
-  Vector<Influences> influences = model.influences;
-  InfluencePrediction prediction(influences, static_cast<std::uint32_t>(model.bones.size()),
-                                 model.weight_bits);
+Vector<Influences> complete_influences(const OrderedMesh& mesh, const SharedRig& rig) {
+  Vector<Influences> influences = rig.influences;
+  InfluencePrediction prediction(influences, static_cast<std::uint32_t>(rig.bones.size()),
+                                 rig.weight_bits);
   std::uint32_t first = 0;
-  for (std::uint32_t j = 0; j < model.slice_layers[0]; ++j) first += model.layer_group_size[j];
+  for (std::uint32_t j = 0; j < rig.slice_layers[0]; ++j) first += rig.layer_group_size[j];
   for (const std::uint32_t v : mesh.vertices_of_layers(first, mesh.num_layers())) {
     prediction.start(mesh.ring(v));
     for (std::size_t k = 1; k < prediction.num_candidates(); ++k)
@@ -107,42 +107,42 @@ Vector<Influences> complete_influences(const OrderedMesh& mesh, const SkinnedMod
   return influences;
 }
 
-ModelRecon::ModelRecon(const OrderedMesh& mesh, const SkinnedModel& model, int position_bits,
+RigRecon::RigRecon(const OrderedMesh& mesh, const SharedRig& rig, int position_bits,
                        bool has_more_groups)
     : mesh_(mesh), position_bits_(position_bits) {
-  const Vector<std::int32_t> rest = recon_rest(model);
-  add_influences(model, rest);
-  if (has_more_groups || !model.trajectories.empty()) start_weights(model, rest);
-  factors_ = recon_factors(model, adaptive_ ? &*adaptive_ : nullptr);
+  const Vector<std::int32_t> rest = recon_rest(rig);
+  add_influences(rig, rest);
+  if (has_more_groups || !rig.trajectories.empty()) start_weights(rig, rest);
+  factors_ = recon_factors(rig, adaptive_ ? &*adaptive_ : nullptr);
   if (has_more_groups) return;
   weights_.reset();
   adaptive_.reset();
   rest_ = {};
 }
 
-ModelRecon::ModelRecon(const OrderedMesh& mesh, const SkinnedModel& model, int position_bits,
+RigRecon::RigRecon(const OrderedMesh& mesh, const SharedRig& rig, int position_bits,
                        std::span<const std::int32_t> values)
     : mesh_(mesh), position_bits_(position_bits) {
-  add_influences(model, recon_rest(model));
+  add_influences(rig, recon_rest(rig));
   auto factors = make_shared_owned<SpatialFactors>(num_vertices());
-  const std::size_t count = model.trajectories.size();
+  const std::size_t count = rig.trajectories.size();
   for (std::size_t l = 0; l < count; ++l) {
-    factors->add(values.subspan(l), model.trajectories[l].spatial_bits, count);
+    factors->add(values.subspan(l), rig.trajectories[l].spatial_bits, count);
   }
   factors_ = std::move(factors);
 }
 
-Vector<std::int32_t> ModelRecon::recon_rest(const SkinnedModel& model) const {
-  if (!model.rest.order_flag) {
-    return recon_values(mesh_, model, 0, position_bits_, {mesh_, true, nullptr});
+Vector<std::int32_t> RigRecon::recon_rest(const SharedRig& rig) const {
+  if (!rig.rest.order_flag) {
+    return recon_values(mesh_, rig, 0, position_bits_, {mesh_, true, nullptr});
   }
   const RestOrder& order = mesh_.rest_order();
-  const RestRecon recon(order, model.rest, model.rest_step, position_bits_);
-  return rlpc::recon_rest(recon, order, model.vertex_residual[0], model.counterparts);
+  const RestRecon recon(order, rig.rest, rig.rest_step, position_bits_);
+  return rlpc::recon_rest(recon, order, rig.vertex_residual[0], rig.counterparts);
 }
 
-void ModelRecon::add_influences(const SkinnedModel& model, std::span<const std::int32_t> rest) {
-  const Vector<Influences> influences = complete_influences(mesh_, model);
+void RigRecon::add_influences(const SharedRig& rig, std::span<const std::int32_t> rest) {
+  const Vector<Influences> influences = complete_influences(mesh_, rig);
   // Exact, except for runs, of which there are usually fewer.
   const std::size_t count = std::accumulate(
       influences.begin(), influences.end(), std::size_t{0},
@@ -171,7 +171,7 @@ void ModelRecon::add_influences(const SkinnedModel& model, std::span<const std::
         runs_.push_back({influence.bone, next, next});
       }
       ++runs_.back().end;
-      const Vec3i& pivot = model.bones[influence.bone].pivot;
+      const Vec3i& pivot = rig.bones[influence.bone].pivot;
       for (std::size_t c = 0; c < 3; ++c) {
         arm_[c].push_back(rest[3 * v + c] - pivot[c]);
       }
@@ -184,41 +184,41 @@ void ModelRecon::add_influences(const SkinnedModel& model, std::span<const std::
   weight_.resize(count + kPadding);
 }
 
-void ModelRecon::start_weights(const SkinnedModel& model, std::span<const std::int32_t> rest) {
-  if (model.prediction != Prediction::kLayers) return;
+void RigRecon::start_weights(const SharedRig& rig, std::span<const std::int32_t> rest) {
+  if (rig.prediction != Prediction::kLayers) return;
   for (auto& plane : rest_) plane.reserve(num_vertices());
   for (std::size_t i = 0; i < rest.size(); ++i) rest_[i % 3].push_back(rest[i]);
   const std::array<std::span<const std::int32_t>, 3> planes{rest_[0], rest_[1], rest_[2]};
-  weights_.emplace(mesh_, model.weights, planes);
-  if (model.weights.num_adaptive_factors > 0) {
-    adaptive_.emplace(mesh_, *weights_, model.weights, planes);
+  weights_.emplace(mesh_, rig.weights, planes);
+  if (rig.weights.num_adaptive_factors > 0) {
+    adaptive_.emplace(mesh_, *weights_, rig.weights, planes);
   }
 }
 
 // Of the component groups from 1 on.
-std::shared_ptr<const SpatialFactors> ModelRecon::recon_factors(
-    const SkinnedModel& model, AdaptiveWeights* adaptive) const {
+std::shared_ptr<const SpatialFactors> RigRecon::recon_factors(
+    const SharedRig& rig, AdaptiveWeights* adaptive) const {
   auto factors = make_shared_owned<SpatialFactors>(num_vertices());
   const ValuePrediction prediction(mesh_, false, weights_ ? &*weights_ : nullptr);
-  for (std::size_t group = 1; group < model.group_end.size(); ++group) {
-    const FactorGroup of_group = factor_group(model, group);
-    const auto values = recon_values(mesh_, model, group, position_bits_, prediction, adaptive);
+  for (std::size_t group = 1; group < rig.group_end.size(); ++group) {
+    const FactorGroup of_group = factor_group(rig, group);
+    const auto values = recon_values(mesh_, rig, group, position_bits_, prediction, adaptive);
     for (std::size_t k = 0; k < of_group.size(); ++k) {
       factors->add(std::span(values).subspan(k),
-                   model.trajectories[of_group.first + k - kRestFactors].spatial_bits,
+                   rig.trajectories[of_group.first + k - kRestFactors].spatial_bits,
                    of_group.size());
     }
   }
   return factors;
 }
 
-// 8.16.2 GOF of tracks: the adaptive weights go on from those of the skinned model.
-std::shared_ptr<const SpatialFactors> ModelRecon::local_factors(const SkinnedGof& gof) const {
+// 8.16.2 GOF of tracks: the adaptive weights go on from those of the shared rig.
+std::shared_ptr<const SpatialFactors> RigRecon::local_factors(const SkinnedGof& gof) const {
   std::optional<AdaptiveWeights> adaptive = adaptive_;
   return recon_factors(gof, adaptive ? &*adaptive : nullptr);
 }
 
-ModelRecon::Run ModelRecon::run(std::size_t tile, std::size_t i) const {
+RigRecon::Run RigRecon::run(std::size_t tile, std::size_t i) const {
   const RunRange& range = runs_[first_run_[tile] + i];
   const std::size_t size = range.end - range.first;
   return {range.bone,

@@ -1,5 +1,5 @@
-// 8.14 and 8.16.1: what has vertices in a skinned GOF or skinned model, reconstructed. It is
-// made once for all GOFs that share a skinned model, and only read after that.
+// 8.14 and 8.16.1: what has vertices in a skinned GOF or shared rig, reconstructed. It is
+// made once for all GOFs that share a shared rig, and only read after that.
 #pragma once
 
 #include <array>
@@ -21,9 +21,9 @@ namespace rlpc {
 
 // 8.10.2 Spatial values: the contribution of a residual of rest positions, or of trajectories,
 // at a vertex of a layer.
-inline std::int64_t rest_difference(const SkinnedModel& model, std::int32_t residual,
+inline std::int64_t rest_difference(const SharedRig& rig, std::int32_t residual,
                                     int layer_step) {
-  return round2(std::int64_t{residual} * layer_step * model.rest_step, 4);
+  return round2(std::int64_t{residual} * layer_step * rig.rest_step, 4);
 }
 inline std::int64_t factor_difference(std::int32_t residual, int layer_step) {
   return std::int64_t{residual} * layer_step;
@@ -31,16 +31,16 @@ inline std::int64_t factor_difference(std::int32_t residual, int layer_step) {
 
 // 8.10.2 Spatial values of the factors of a group, [num_vertices][factors]; without residuals
 // of layers whose slices are absent. weights: null if no factor is adaptive.
-Vector<std::int32_t> recon_values(const OrderedMesh& mesh, const SkinnedModel& model,
+Vector<std::int32_t> recon_values(const OrderedMesh& mesh, const SharedRig& rig,
                                   std::size_t group, int position_bits,
                                   const ValuePrediction& prediction,
                                   AdaptiveWeights* weights = nullptr);
 
 // 8.14.1 AddAbsentInfluences( ): the influences of all vertices, predicted where the slice is
 // absent; [num_vertices].
-Vector<Influences> complete_influences(const OrderedMesh& mesh, const SkinnedModel& model);
+Vector<Influences> complete_influences(const OrderedMesh& mesh, const SharedRig& rig);
 
-class ModelRecon {
+class RigRecon {
  public:
   // Influences of one bone on vertices of a tile.
   struct Run {
@@ -49,16 +49,16 @@ class ModelRecon {
     std::span<const std::uint8_t> place;  // index of each vertex in its tile
   };
 
-  // The mesh must outlive it; the model is read only during the call. has_more_groups: whether
+  // The mesh must outlive it; the rig is read only during the call. has_more_groups: whether
   // local_factors() will be called. Cannot fail.
-  ModelRecon(const OrderedMesh& mesh, const SkinnedModel& model, int position_bits,
+  RigRecon(const OrderedMesh& mesh, const SharedRig& rig, int position_bits,
              bool has_more_groups);
   // The same where the spatial values of all trajectories are known,
   // [num_vertices][trajectory].
-  ModelRecon(const OrderedMesh& mesh, const SkinnedModel& model, int position_bits,
+  RigRecon(const OrderedMesh& mesh, const SharedRig& rig, int position_bits,
              std::span<const std::int32_t> values);
-  ModelRecon(const ModelRecon&) = delete;
-  ModelRecon& operator=(const ModelRecon&) = delete;
+  RigRecon(const RigRecon&) = delete;
+  RigRecon& operator=(const RigRecon&) = delete;
 
   const OrderedMesh& mesh() const { return mesh_; }
   std::size_t num_vertices() const { return mesh_.num_vertices(); }
@@ -82,10 +82,10 @@ class ModelRecon {
     std::uint32_t end;
   };
 
-  Vector<std::int32_t> recon_rest(const SkinnedModel& model) const;
-  void add_influences(const SkinnedModel& model, std::span<const std::int32_t> rest);
-  void start_weights(const SkinnedModel& model, std::span<const std::int32_t> rest);
-  std::shared_ptr<const SpatialFactors> recon_factors(const SkinnedModel& model,
+  Vector<std::int32_t> recon_rest(const SharedRig& rig) const;
+  void add_influences(const SharedRig& rig, std::span<const std::int32_t> rest);
+  void start_weights(const SharedRig& rig, std::span<const std::int32_t> rest);
+  std::shared_ptr<const SpatialFactors> recon_factors(const SharedRig& rig,
                                                       AdaptiveWeights* adaptive) const;
 
   const OrderedMesh& mesh_;

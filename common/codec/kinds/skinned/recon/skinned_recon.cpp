@@ -57,16 +57,16 @@ TemporalFactor temporal_factor(const Trajectory& trajectory, int track_levels) {
 // 8.14.3 Positions
 SkinnedRecon::SkinnedRecon(const OrderedMesh& mesh, const SkinnedGof& gof, int position_bits,
                            const Kernels& loops)
-    : SkinnedRecon(make_shared_owned<ModelRecon>(mesh, gof, position_bits, false), gof, loops) {
+    : SkinnedRecon(make_shared_owned<RigRecon>(mesh, gof, position_bits, false), gof, loops) {
 }
 
-SkinnedRecon::SkinnedRecon(std::shared_ptr<const ModelRecon> model, const SkinnedGof& gof,
+SkinnedRecon::SkinnedRecon(std::shared_ptr<const RigRecon> rig, const SkinnedGof& gof,
                            const Kernels& loops)
     : num_frames_(gof.num_frames),
-      rest_step_(gof.model ? gof.model->rest_step : gof.rest_step),
-      widths_{gof.weight_bits, gof.fraction_bits, model->position_bits()},
+      rest_step_(gof.rig ? gof.rig->rest_step : gof.rest_step),
+      widths_{gof.weight_bits, gof.fraction_bits, rig->position_bits()},
       loops_(loops),
-      model_(std::move(model)),
+      rig_(std::move(rig)),
       bones_(recon_bones(gof.bones, gof.num_frames, gof.track_levels)) {
   for (const Bone& bone : gof.bones) {
     values_of_frame_ += 3 * (std::size_t{bone.rotation_flag} + std::size_t{bone.origin_flag});
@@ -80,24 +80,24 @@ SkinnedRecon::SkinnedRecon(std::shared_ptr<const ModelRecon> model, const Skinne
                            std::span<const TemporalFactor> of_spatial) {
     sums_.emplace_back(std::move(spatial), of_spatial, 3 * std::size_t{num_frames_}, loops);
   };
-  const std::size_t shared = std::min(temporal.size(), model_->factors()->num_components());
-  add_sum(model_->factors(), std::span(temporal).first(shared));
-  if (gof.model && temporal.size() > shared) {
-    add_sum(model_->local_factors(gof), std::span(temporal).subspan(shared));
+  const std::size_t shared = std::min(temporal.size(), rig_->factors()->num_components());
+  add_sum(rig_->factors(), std::span(temporal).first(shared));
+  if (gof.rig && temporal.size() > shared) {
+    add_sum(rig_->local_factors(gof), std::span(temporal).subspan(shared));
   }
 }
 
 Skeleton SkinnedRecon::skeleton() const {
   Skeleton skeleton;
   skeleton.step = rest_step_;
-  skeleton.values_of_vertex = kRestFactors + model_->factors()->num_components();
+  skeleton.values_of_vertex = kRestFactors + rig_->factors()->num_components();
   for (const BoneMotion& bone : bones_) {
     skeleton.bones.push_back({bone.parent, {axes_of(kNoRotation), bone.pivot}});
   }
-  skeleton.influences.resize(model_->num_vertices());
-  for (std::size_t tile = 0; tile < model_->num_tiles(); ++tile) {
-    for (std::size_t i = 0; i < model_->num_runs(tile); ++i) {
-      const ModelRecon::Run run = model_->run(tile, i);
+  skeleton.influences.resize(rig_->num_vertices());
+  for (std::size_t tile = 0; tile < rig_->num_tiles(); ++tile) {
+    for (std::size_t i = 0; i < rig_->num_runs(tile); ++i) {
+      const RigRecon::Run run = rig_->run(tile, i);
       for (std::size_t k = 0; k < run.arms.size; ++k) {
         skeleton.influences[tile * kTileValues + run.place[k]].push_back(
             {static_cast<std::uint16_t>(run.bone),
@@ -119,15 +119,15 @@ Vector<BonePlace> SkinnedRecon::places(std::uint32_t f) const {
 // Adds the rest positions of a tile as moved by their bones, times the weights.
 void SkinnedRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const {
   // All vertices follow a single bone: the run holds their positions.
-  const std::size_t num_runs = model_->num_runs(tile);
-  const std::size_t n = std::min(kTileValues, model_->num_vertices() - tile * kTileValues);
-  const bool alone = num_runs == 1 && model_->run(tile, 0).arms.size == n;
+  const std::size_t num_runs = rig_->num_runs(tile);
+  const std::size_t n = std::min(kTileValues, rig_->num_vertices() - tile * kTileValues);
+  const bool alone = num_runs == 1 && rig_->run(tile, 0).arms.size == n;
   if (!alone) {
     for (auto& of_coordinate : sums) of_coordinate.fill(0);
   }
   std::array<std::int64_t, kTileValues> places{};
   for (std::size_t i = 0; i < num_runs; ++i) {
-    const ModelRecon::Run run = model_->run(tile, i);
+    const RigRecon::Run run = rig_->run(tile, i);
     const BonePose& pose = bones_[run.bone].poses[f];
     for (std::size_t c = 0; c < 3; ++c) {
       Vec3i axis{};
@@ -145,8 +145,8 @@ void SkinnedRecon::frames(std::uint32_t first, std::uint32_t count,
   Sums places{};
   std::array<std::array<std::int32_t, kTileValues>, 3> moved{};
   Vector<std::int64_t> displacements(3 * std::size_t{count} * kTileValues);
-  const std::size_t num_vertices = model_->num_vertices();
-  for (std::size_t tile = 0; tile < model_->num_tiles(); ++tile) {
+  const std::size_t num_vertices = rig_->num_vertices();
+  for (std::size_t tile = 0; tile < rig_->num_tiles(); ++tile) {
     std::fill(displacements.begin(), displacements.end(), 0);
     for (const ComponentSum& sum : sums_) {
       sum.add_tile(tile, 3 * std::size_t{first}, 3 * std::size_t{count}, displacements);

@@ -10,7 +10,7 @@
 #include "common/codec/kernels/component_sum.h"
 #include "common/codec/kernels/kernels.h"
 #include "common/codec/kinds/skinned/recon/bones.h"
-#include "common/codec/kinds/skinned/recon/model_recon.h"
+#include "common/codec/kinds/skinned/recon/rig_recon.h"
 #include "common/codec/kinds/skinned/recon/trajectory_prediction.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "common/codec/mesh/ordered_mesh.h"
@@ -33,8 +33,8 @@ class SkinnedRecon {
   // only during the call. Cannot fail.
   SkinnedRecon(const OrderedMesh& mesh, const SkinnedGof& gof, int position_bits,
                const Kernels& loops = kernels().back());
-  // Prepares a GOF with the vertices of a skinned model.
-  SkinnedRecon(std::shared_ptr<const ModelRecon> model, const SkinnedGof& gof,
+  // Prepares a GOF with the vertices of a shared rig.
+  SkinnedRecon(std::shared_ptr<const RigRecon> rig, const SkinnedGof& gof,
                const Kernels& loops = kernels().back());
 
   // Reconstructs frames first to first + count - 1 of the GOF, grid units,
@@ -61,9 +61,9 @@ class SkinnedRecon {
   std::size_t values_of_frame_ = 0;
   PositionWidths widths_;
   Kernels loops_;
-  std::shared_ptr<const ModelRecon> model_;
+  std::shared_ptr<const RigRecon> rig_;
   Vector<BoneMotion> bones_;
-  // Displacements; row 3 * f + c: coordinate c of frame f. Of the skinned model, then of local
+  // Displacements; row 3 * f + c: coordinate c of frame f. Of the shared rig, then of local
   // component groups.
   Vector<ComponentSum> sums_;
 };

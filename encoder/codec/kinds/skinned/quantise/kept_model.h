@@ -1,4 +1,4 @@
-// A skinned model that later spans may use, exactly as it was coded.
+// A shared rig that later spans may use, exactly as it was coded.
 #pragma once
 
 #include <array>
@@ -6,14 +6,14 @@
 #include <memory>
 #include <vector>
 
-#include "common/codec/kinds/skinned/recon/model_recon.h"
+#include "common/codec/kinds/skinned/recon/rig_recon.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 
 namespace rlpc {
 
-struct KeptModel {
-  std::shared_ptr<const SkinnedModel> model;  // without residuals of vertices
-  std::shared_ptr<const ModelRecon> recon;
+struct KeptRig {
+  std::shared_ptr<const SharedRig> rig;  // without residuals of vertices
+  std::shared_ptr<const RigRecon> recon;
   std::array<std::vector<std::int32_t>, 3> rest;  // rest positions, 1/16 grid units
 };
 

@@ -93,22 +93,22 @@ class SkinnedAnalyser {
         before_(before) {}
 
   SkinnedAnalysis analyse() {
-    SkinnedModel& model = found_.model;
-    model.weight_bits = rig_.bones.size() > 1 ? settings_.weight_bits : 0;
-    model.prediction = settings_.prediction;
-    model.layer_group_size = {mesh_.num_layers()};
-    model.layer_step = layer_steps(mesh_.num_layers(), settings_.layer_steps);
-    model.slice_layers = {1};
+    SharedRig& rig = found_.rig;
+    rig.weight_bits = rig_.bones.size() > 1 ? settings_.weight_bits : 0;
+    rig.prediction = settings_.prediction;
+    rig.layer_group_size = {mesh_.num_layers()};
+    rig.layer_step = layer_steps(mesh_.num_layers(), settings_.layer_steps);
+    rig.slice_layers = {1};
     if (before_ != nullptr && settings_.draft) {
       found_.gofs = before_->gofs;
       found_.bones = before_->bones;
-      model.bones = before_->model.bones;
-      model.influences = before_->model.influences;
+      rig.bones = before_->rig.bones;
+      rig.influences = before_->rig.influences;
     } else {
       found_.gofs = gofs_of_span(frames_, settings_.track_levels);
       code_bones();
       for (const auto& weights : rig_.weights) {
-        model.influences.push_back(quantise_weights(weights, 1 << model.weight_bits));
+        rig.influences.push_back(quantise_weights(weights, 1 << rig.weight_bits));
       }
     }
     for (const BoneMotion& bone : found_.bones) {
@@ -182,14 +182,14 @@ class SkinnedAnalyser {
         }
       }
       bones.add(bone, wanted);
-      found_.model.bones.push_back(std::move(bone));
+      found_.rig.bones.push_back(std::move(bone));
     }
     found_.bones = std::move(bones.motions());
   }
 
   // The least-squares rest position for the decoded bones.
   Point fit_rest(std::uint32_t v, MeanMotions& motions) const {
-    const auto mean = motions.of(found_.model.influences[v], found_.model.weight_bits);
+    const auto mean = motions.of(found_.rig.influences[v], found_.rig.weight_bits);
     SmallSystem<3> m;
     for (std::uint32_t f = 0; f < frames_.num_frames; ++f) {
       const MeanMotion& motion = mean[f];
@@ -208,25 +208,25 @@ class SkinnedAnalyser {
 
   // Residuals by layers, of the wanted positions; gives the values as decoded.
   std::vector<std::int32_t> code_rest_in_layers(std::span<const Point> wanted) {
-    SkinnedModel& model = found_.model;
+    SharedRig& rig = found_.rig;
     std::vector<std::int32_t> values(kRestFactors * wanted.size());
-    model.vertex_residual.emplace_back(values.size());
+    rig.vertex_residual.emplace_back(values.size());
     const ValuePrediction prediction(mesh_, true, nullptr);
     std::array<std::int64_t, kRestFactors> predicted{};
     for (const std::uint32_t v : mesh_.order()) {
       prediction.predict(v, values, predicted);
-      const int layer_step = model.layer_step[mesh_.layer_of(v)];
-      const double unit = static_cast<double>(model.rest_step) * layer_step / kMaxLayerStep;
+      const int layer_step = rig.layer_step[mesh_.layer_of(v)];
+      const double unit = static_cast<double>(rig.rest_step) * layer_step / kMaxLayerStep;
       for (std::size_t c = 0; c < 3; ++c) {
         constexpr double kMost = static_cast<double>(kMaxResidual);  // fixed: format
         const double steps =
             (wanted[v][c] * kPointScale - static_cast<double>(predicted[c])) / unit;
         const auto residual =
             static_cast<std::int32_t>(round_to_int(std::clamp(steps, -kMost, kMost)));
-        model.vertex_residual[0][v * kRestFactors + c] = residual;
+        rig.vertex_residual[0][v * kRestFactors + c] = residual;
         values[v * kRestFactors + c] =
             clip_signed(rest_bits(position_bits_),
-                        predicted[c] + rest_difference(model, residual, layer_step));
+                        predicted[c] + rest_difference(rig, residual, layer_step));
       }
     }
     return values;
@@ -235,7 +235,7 @@ class SkinnedAnalyser {
   // Replaces residuals by those in an order of their own (8.18) if these cost less.
   void code_rest_in_order_of_its_own(std::span<const Point> wanted,
                                      std::vector<std::int32_t>& values) {
-    SkinnedModel& model = found_.model;
+    SharedRig& rig = found_.rig;
     const double limit = exact_exp2(rest_bits(position_bits_) - 1);
     std::vector<std::int32_t> rounded;
     for (const Point& x : wanted) {
@@ -246,23 +246,23 @@ class SkinnedAnalyser {
     }
     const bool counterparts = settings_.rest == RestTools::kCounterparts && !settings_.draft;
     RestEncoding coded =
-        code_rest_in_order(mesh_, rounded, model.rest_step, position_bits_,
+        code_rest_in_order(mesh_, rounded, rig.rest_step, position_bits_,
                            {.few = settings_.draft, .counterparts = counterparts});
-    if (!(coded.cost < rest_cost_in_layers(mesh_, rounded, model.rest_step,
-                                           model.vertex_residual[0], values))) {
+    if (!(coded.cost < rest_cost_in_layers(mesh_, rounded, rig.rest_step,
+                                           rig.vertex_residual[0], values))) {
       return;
     }
-    model.rest = coded.settings;
-    model.vertex_residual[0] = std::move(coded.residual);
-    model.counterparts = std::move(coded.counterparts);
+    rig.rest = coded.settings;
+    rig.vertex_residual[0] = std::move(coded.residual);
+    rig.counterparts = std::move(coded.counterparts);
     values = std::move(coded.values);
   }
 
   void code_rest() {
-    SkinnedModel& model = found_.model;
+    SharedRig& rig = found_.rig;
     const double rest_step =
         step_ / std::sqrt(static_cast<double>(frames_.num_frames)) * kPointScale;
-    model.rest_step = static_cast<std::uint32_t>(
+    rig.rest_step = static_cast<std::uint32_t>(
         std::clamp<std::int64_t>(round_to_int(rest_step), 1, kMaxRestStep));
     const std::uint32_t n = frames_.num_vertices;
     std::vector<Point> wanted(n);
@@ -290,7 +290,7 @@ class SkinnedAnalyser {
                   const auto v = static_cast<std::uint32_t>(first + i);
                   write_displacement(
                       frames_, chosen, v,
-                      motions.of(found_.model.influences[v], found_.model.weight_bits),
+                      motions.of(found_.rig.influences[v], found_.rig.weight_bits),
                       rest_of(v), &rows[i * width]);
                 }
               });

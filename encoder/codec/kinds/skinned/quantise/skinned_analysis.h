@@ -58,7 +58,7 @@ struct SkinnedSettings {
 TrackOptions track_options(const SkinnedSettings& settings);
 
 struct SkinnedAnalysis {
-  SkinnedModel model;  // without trajectories and geometry weights; bones without motion
+  SharedRig rig;  // without trajectories and geometry weights; bones without motion
   // The GOFs of the span, with their bones; without trajectories.
   std::vector<SkinnedGof> gofs;
   std::vector<BoneMotion> bones;                  // as decoded, in all frames

@@ -94,44 +94,44 @@ double expected_spatial_bits(const SkinnedAnalysis& analysis, std::size_t count,
 }
 
 // Adds trajectories to a span. Coarsens the steps if values do not fit their widths.
-// shared: the skinned model of a local component group, or null; if values do not fit its
+// shared: the shared rig of a local component group, or null; if values do not fit its
 // fraction bits, there are no trajectories.
 CodedTrajectories code_trajectories(const OrderedMesh& mesh, const SkinnedAnalysis& analysis,
                                     const SkinnedSettings& settings, double step,
-                                    const ModelRecon* shared, CodedSpan& coded) {
+                                    const RigRecon* shared, CodedSpan& coded) {
   constexpr double kReserve = 1.02;  // fixed: the next try fits
-  SkinnedModel& model = coded.model;
+  SharedRig& rig = coded.rig;
   std::optional<int> fraction_bits;
-  if (shared != nullptr) fraction_bits = model.fraction_bits;
+  if (shared != nullptr) fraction_bits = rig.fraction_bits;
   TemporalLimits limits{
       std::min<std::size_t>(settings.max_trajectories, kLevels.back().max_components)};
   for (;;) {
     TemporalValues temporal = code_temporal_values(analysis, settings, step, limits);
     if (temporal.size() == 0) return {{}, choose_slice_cuts(settings, 0.0, 0)};
     const std::size_t count = temporal.size();
-    if (shared == nullptr) model.weights.num_adaptive_factors = 0;
-    if (shared == nullptr && model.prediction == Prediction::kLayers) {
-      model.weights.num_adaptive_factors =
+    if (shared == nullptr) rig.weights.num_adaptive_factors = 0;
+    if (shared == nullptr && rig.prediction == Prediction::kLayers) {
+      rig.weights.num_adaptive_factors =
           std::min(settings.num_adaptive_factors, static_cast<std::uint32_t>(count));
     }
     constexpr double kAdaptive =
         0.42;  // fixed: of the bits, with adaptive weights; an estimate
     const double bits = expected_spatial_bits(analysis, temporal.num_tried, step) *
-                        (model.weights.num_adaptive_factors > 0 ? kAdaptive : 1.0);
+                        (rig.weights.num_adaptive_factors > 0 ? kAdaptive : 1.0);
     SliceCuts cuts = choose_slice_cuts(settings, bits, count);
-    SpatialValues spatial = code_spatial_values(mesh, model, analysis, temporal, cuts.group_end,
+    SpatialValues spatial = code_spatial_values(mesh, rig, analysis, temporal, cuts.group_end,
                                                 shared, settings.rounding, step);
     if (spatial.excess > 1.0) {
       step *= kReserve * spatial.excess;
       continue;
     }
     const std::optional<int> lacking =
-        set_scales(spatial.largest, coded.gofs, fraction_bits, temporal, model.fraction_bits);
+        set_scales(spatial.largest, coded.gofs, fraction_bits, temporal, rig.fraction_bits);
     if (!lacking) return {{}, {}};
     if (*lacking == 0) {
-      model.trajectories.resize(count);
+      rig.trajectories.resize(count);
       for (std::size_t l = 0; l < count; ++l) {
-        model.trajectories[l].spatial_bits = temporal.of_gof[0][l].spatial_bits;
+        rig.trajectories[l].spatial_bits = temporal.of_gof[0][l].spatial_bits;
       }
       for (std::size_t g = 0; g < coded.gofs.size(); ++g) {
         coded.gofs[g].trajectories = std::move(temporal.of_gof[g]);
@@ -165,19 +165,19 @@ double expected_squared_error(const SkinnedAnalysis& analysis, double step) {
 
 CodedSpan code_skinned_span(const OrderedMesh& mesh, const SkinnedAnalysis& analysis,
                             const SkinnedSettings& settings, double step) {
-  CodedSpan coded{analysis.model, analysis.gofs};
-  SkinnedModel& model = coded.model;
-  model.weights = {settings.damping_log2, settings.outer_weight, settings.outer_scale};
+  CodedSpan coded{analysis.rig, analysis.gofs};
+  SharedRig& rig = coded.rig;
+  rig.weights = {settings.damping_log2, settings.outer_weight, settings.outer_scale};
   const CodedTrajectories trajectories =
       code_trajectories(mesh, analysis, settings, step, nullptr, coded);
-  cut_slices(mesh, settings, trajectories.cuts, trajectories.residual, model);
+  cut_slices(mesh, settings, trajectories.cuts, trajectories.residual, rig);
   return coded;
 }
 
 LocalGroup code_local_group(const OrderedMesh& mesh, const SkinnedAnalysis& analysis,
-                            const ModelRecon& shared, SkinnedSettings settings, double step) {
+                            const RigRecon& shared, SkinnedSettings settings, double step) {
   settings.component_groups = 1;
-  CodedSpan coded{analysis.model, analysis.gofs};
+  CodedSpan coded{analysis.rig, analysis.gofs};
   CodedTrajectories trajectories =
       code_trajectories(mesh, analysis, settings, step, &shared, coded);
   return {std::move(coded.gofs.front().trajectories), std::move(trajectories.residual)};
@@ -197,24 +197,24 @@ SkinnedGof merge_into_gof(CodedSpan coded) {
   SkinnedGof gof = std::move(coded.gofs.front());
   std::vector<Bone> bones = std::move(gof.bones);
   std::vector<Trajectory> trajectories = std::move(gof.trajectories);
-  static_cast<SkinnedModel&>(gof) = std::move(coded.model);
+  static_cast<SharedRig&>(gof) = std::move(coded.rig);
   gof.bones = std::move(bones);
   gof.trajectories = std::move(trajectories);
   return gof;
 }
 
-void use_model(std::shared_ptr<const SkinnedModel> model, SkinnedGof& gof) {
+void use_rig(std::shared_ptr<const SharedRig> rig, SkinnedGof& gof) {
   gof.kind = GofKind::kSharedRig;
-  gof.fraction_bits = model->fraction_bits;
-  gof.weight_bits = model->weight_bits;
-  gof.prediction = model->prediction;
-  gof.weights = model->weights;
-  gof.layer_group_size = model->layer_group_size;
-  gof.layer_step = model->layer_step;
-  gof.num_component_groups = model->num_component_groups;
-  gof.group_end = {model->group_end.back()};
-  gof.slice_layers = model->slice_layers;
-  gof.model = std::move(model);
+  gof.fraction_bits = rig->fraction_bits;
+  gof.weight_bits = rig->weight_bits;
+  gof.prediction = rig->prediction;
+  gof.weights = rig->weights;
+  gof.layer_group_size = rig->layer_group_size;
+  gof.layer_step = rig->layer_step;
+  gof.num_component_groups = rig->num_component_groups;
+  gof.group_end = {rig->group_end.back()};
+  gof.slice_layers = rig->slice_layers;
+  gof.rig = std::move(rig);
 }
 
 }  // namespace rlpc

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/codec/kinds/skinned/recon/model_recon.h"
+#include "common/codec/kinds/skinned/recon/rig_recon.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "common/codec/mesh/ordered_mesh.h"
 #include "encoder/codec/kinds/skinned/quantise/skinned_analysis.h"
@@ -26,7 +26,7 @@ double expected_squared_error(const SkinnedAnalysis& analysis, double step);
 
 // A span as coded: what its GOFs share, and what each has of its own.
 struct CodedSpan {
-  SkinnedModel model;
+  SharedRig rig;
   std::vector<SkinnedGof> gofs;  // bones and trajectories with their motion, nothing else
   // Of a draft: spatial values as decoded, [num_vertices][trajectory].
   std::vector<std::int32_t> values = {};
@@ -38,7 +38,7 @@ CodedSpan code_skinned_span(const OrderedMesh& mesh, const SkinnedAnalysis& anal
 
 // The only GOF of a span, with vertices of its own.
 SkinnedGof merge_into_gof(CodedSpan coded);
-// Trajectories that a GOF of tracks has besides those of its skinned model.
+// Trajectories that a GOF of tracks has besides those of its shared rig.
 struct LocalGroup {
   std::vector<Trajectory> trajectories;  // empty: none is worth its bits
   std::vector<std::int32_t> residual;    // [num_vertices][trajectory]
@@ -46,14 +46,14 @@ struct LocalGroup {
 
 // Codes principal components as a local component group.
 //
-//   analysis  of a single GOF: what its skinned model leaves; model: that, without trajectories
-//   shared    the skinned model
+//   analysis  of a single GOF: what its shared rig leaves; rig: that, without trajectories
+//   shared    the shared rig
 LocalGroup code_local_group(const OrderedMesh& mesh, const SkinnedAnalysis& analysis,
-                            const ModelRecon& shared, SkinnedSettings settings, double step);
+                            const RigRecon& shared, SkinnedSettings settings, double step);
 // Adds a local component group, unless it is empty, to a GOF of tracks.
 void add_local_group(LocalGroup group, SkinnedGof& gof);
 
 // Makes a GOF of a span a GOF of tracks.
-void use_model(std::shared_ptr<const SkinnedModel> model, SkinnedGof& gof);
+void use_rig(std::shared_ptr<const SharedRig> rig, SkinnedGof& gof);
 
 }  // namespace rlpc

@@ -27,8 +27,8 @@ std::vector<std::size_t> component_group_ends(std::size_t num_groups, std::size_
 }
 
 void cut_components(std::size_t num_vertices, std::span<const std::size_t> ends,
-                    std::span<const std::int32_t> residual, SkinnedModel& model) {
-  const std::size_t count = model.trajectories.size();
+                    std::span<const std::int32_t> residual, SharedRig& rig) {
+  const std::size_t count = rig.trajectories.size();
   std::size_t first = 0;
   for (const std::size_t end : ends) {
     const std::size_t size = end - first;
@@ -36,11 +36,11 @@ void cut_components(std::size_t num_vertices, std::span<const std::size_t> ends,
     for (std::size_t v = 0; v < num_vertices; ++v) {
       std::copy_n(&residual[v * count + first], size, &of_group[v * size]);
     }
-    model.vertex_residual.push_back(std::move(of_group));
-    model.group_end.push_back(kRestFactors + end);
+    rig.vertex_residual.push_back(std::move(of_group));
+    rig.group_end.push_back(kRestFactors + end);
     first = end;
   }
-  model.num_component_groups = static_cast<std::uint32_t>(ends.size());
+  rig.num_component_groups = static_cast<std::uint32_t>(ends.size());
 }
 
 }  // namespace
@@ -58,12 +58,12 @@ SliceCuts choose_slice_cuts(const SkinnedSettings& settings, double bits, std::s
 }
 
 void cut_slices(const OrderedMesh& mesh, const SkinnedSettings& settings, const SliceCuts& cuts,
-                std::span<const std::int32_t> residual, SkinnedModel& model) {
-  model.layer_group_size =
+                std::span<const std::int32_t> residual, SharedRig& rig) {
+  rig.layer_group_size =
       layer_group_sizes(mesh, cuts.num_layer_groups, settings.layer_groups);
-  cut_components(mesh.num_vertices(), cuts.group_end, residual, model);
-  model.slice_layers.assign(model.group_end.size(),
-                            static_cast<std::uint32_t>(model.layer_group_size.size()));
+  cut_components(mesh.num_vertices(), cuts.group_end, residual, rig);
+  rig.slice_layers.assign(rig.group_end.size(),
+                            static_cast<std::uint32_t>(rig.layer_group_size.size()));
 }
 
 }  // namespace rlpc

@@ -30,6 +30,6 @@ SliceCuts choose_slice_cuts(const SkinnedSettings& settings, double bits, std::s
 //   residual  [num_vertices][trajectory of the GOF]
 //   gof       its trajectories are set; layer groups, component groups and slices are added
 void cut_slices(const OrderedMesh& mesh, const SkinnedSettings& settings, const SliceCuts& cuts,
-                std::span<const std::int32_t> residual, SkinnedModel& model);
+                std::span<const std::int32_t> residual, SharedRig& rig);
 
 }  // namespace rlpc

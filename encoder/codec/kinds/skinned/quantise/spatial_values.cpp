@@ -78,18 +78,18 @@ class FittedFactors {
 };
 
 // The adaptive weights before the first trajectory; none if there are none.
-std::optional<AdaptiveWeights> start_weights(const OrderedMesh& mesh, const SkinnedModel& model,
+std::optional<AdaptiveWeights> start_weights(const OrderedMesh& mesh, const SharedRig& rig,
                                              const SkinnedAnalysis& analysis,
                                              const std::optional<GeometryWeights>& weights,
-                                             const ModelRecon* shared) {
+                                             const RigRecon* shared) {
   if (shared != nullptr) {
     const AdaptiveWeights* before = shared->adaptive_weights();
     return before != nullptr ? std::optional(*before) : std::nullopt;
   }
-  if (model.weights.num_adaptive_factors == 0) return std::nullopt;
+  if (rig.weights.num_adaptive_factors == 0) return std::nullopt;
   const auto& rest = analysis.rest;
   return AdaptiveWeights(
-      mesh, *weights, model.weights,
+      mesh, *weights, rig.weights,
       std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
 }
 
@@ -104,11 +104,11 @@ struct Pass {
 
 class SpatialCoder {
  public:
-  SpatialCoder(const OrderedMesh& mesh, const SkinnedModel& model, FittedFactors factors,
+  SpatialCoder(const OrderedMesh& mesh, const SharedRig& rig, FittedFactors factors,
                const ValuePrediction& prediction, AdaptiveWeights* adaptive, std::size_t count,
                Rounding rounding, double step)
       : mesh_(mesh),
-        model_(model),
+        rig_(rig),
         factors_(std::move(factors)),
         prediction_(prediction),
         adaptive_(adaptive),
@@ -185,7 +185,7 @@ class SpatialCoder {
   // predicted: unless weights adapt.
   void code(std::uint32_t v, std::span<const double> factors,
             std::span<const std::int64_t> predicted, VertexAdaptation* adaptation, Pass& pass) {
-    const int layer_step = model_.layer_step[mesh_.layer_of(v)];
+    const int layer_step = rig_.layer_step[mesh_.layer_of(v)];
     if (pass.choice) pass.choice->start(v);
     for (std::size_t l = 0; l < count_; ++l) {
       const double wanted = factors[l] * per_step_;
@@ -214,7 +214,7 @@ class SpatialCoder {
   }
 
   const OrderedMesh& mesh_;
-  const SkinnedModel& model_;
+  const SharedRig& rig_;
   FittedFactors factors_;
   const ValuePrediction& prediction_;
   AdaptiveWeights* adaptive_;
@@ -227,26 +227,26 @@ class SpatialCoder {
 
 }  // namespace
 
-SpatialValues code_spatial_values(const OrderedMesh& mesh, const SkinnedModel& model,
+SpatialValues code_spatial_values(const OrderedMesh& mesh, const SharedRig& rig,
                                   const SkinnedAnalysis& analysis,
                                   const TemporalValues& temporal,
                                   std::span<const std::size_t> group_end,
-                                  const ModelRecon* shared, Rounding rounding, double step) {
+                                  const RigRecon* shared, Rounding rounding, double step) {
   const std::size_t count = temporal.size();
   std::optional<GeometryWeights> weights;
-  if (model.prediction == Prediction::kLayers) {
+  if (rig.prediction == Prediction::kLayers) {
     const auto& rest = analysis.rest;
-    weights.emplace(mesh, model.weights,
+    weights.emplace(mesh, rig.weights,
                     std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
   }
   const ValuePrediction prediction(mesh, false, weights ? &*weights : nullptr);
   std::optional<AdaptiveWeights> adaptive =
-      start_weights(mesh, model, analysis, weights, shared);
+      start_weights(mesh, rig, analysis, weights, shared);
   if (adaptive) {
     const std::size_t before = shared != nullptr ? shared->factors()->num_components() : 0;
     adaptive->start(before, count, group_end);
   }
-  return SpatialCoder(mesh, model, {analysis.pc, temporal}, prediction,
+  return SpatialCoder(mesh, rig, {analysis.pc, temporal}, prediction,
                       adaptive ? &*adaptive : nullptr, count, rounding, step)
       .code();
 }

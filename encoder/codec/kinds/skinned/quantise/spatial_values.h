@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/codec/kinds/skinned/recon/model_recon.h"
+#include "common/codec/kinds/skinned/recon/rig_recon.h"
 #include "common/codec/mesh/ordered_mesh.h"
 #include "encoder/codec/kinds/skinned/quantise/skinned_analysis.h"
 #include "encoder/codec/kinds/skinned/quantise/temporal_values.h"
@@ -22,14 +22,14 @@ struct SpatialValues {
 // Spatial values that fit best, in the least-squares sense, with the decoded temporal values.
 // There must be at least one trajectory.
 //
-//   model      that of the analysis, with its weight settings
+//   rig      that of the analysis, with its weight settings
 //   group_end  ends of the component groups, in trajectories
-//   shared     the skinned model of a local component group; null: there is none
+//   shared     the shared rig of a local component group; null: there is none
 //   step       quantiser step, grid units
-SpatialValues code_spatial_values(const OrderedMesh& mesh, const SkinnedModel& model,
+SpatialValues code_spatial_values(const OrderedMesh& mesh, const SharedRig& rig,
                                   const SkinnedAnalysis& analysis,
                                   const TemporalValues& temporal,
                                   std::span<const std::size_t> group_end,
-                                  const ModelRecon* shared, Rounding rounding, double step);
+                                  const RigRecon* shared, Rounding rounding, double step);
 
 }  // namespace rlpc

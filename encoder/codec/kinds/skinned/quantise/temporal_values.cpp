@@ -29,7 +29,7 @@ class TemporalCoder {
       : analysis_(analysis),
         settings_(settings),
         step_(step),
-        num_vertices_(analysis.model.influences.size()),
+        num_vertices_(analysis.rig.influences.size()),
         tracks_(analysis.gofs, settings, analysis.gofs.size() > 1) {}
 
   TemporalValues code(const TemporalLimits& limits) {
@@ -74,7 +74,7 @@ class TemporalCoder {
 
   // The exponent of the product of both steps, 2^(eighths / 8), which is what the stream codes.
   int eighths_of(std::size_t l, int least_eighths) const {
-    const double error = temporal_error(analysis_.model);
+    const double error = temporal_error(analysis_.rig);
     const double wanted = step_ * std::sqrt(error / importance(l)) * step_;
     const double least = step_ * largest_magnitude(analysis_.pc.temporal[l]) / kMostTemporal;
     return std::clamp(static_cast<int>(round_to_int(8.0 * det_log2(std::max(wanted, least)))),

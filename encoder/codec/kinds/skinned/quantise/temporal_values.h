@@ -17,8 +17,8 @@ namespace rlpc {
 // may be coarser.
 inline constexpr double kTemporalErrorOfBones = 2.0;
 // The squared error of a temporal value relative to that of a spatial one.
-inline double temporal_error(const SkinnedModel& model) {
-  return model.bones.size() > 1 ? kTemporalErrorOfBones : kTemporalError;
+inline double temporal_error(const SharedRig& rig) {
+  return rig.bones.size() > 1 ? kTemporalErrorOfBones : kTemporalError;
 }
 
 struct TemporalValues {

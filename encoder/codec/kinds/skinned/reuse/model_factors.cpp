@@ -1,4 +1,4 @@
-#include "encoder/codec/kinds/skinned/reuse/model_factors.h"
+#include "encoder/codec/kinds/skinned/reuse/rig_factors.h"
 
 #include <algorithm>
 #include <span>
@@ -23,9 +23,9 @@ void for_blocks(std::size_t num_vertices, const Use& use) {
 }
 
 // A normalised factor of 1, in the unit of the temporal values that the stream codes.
-std::vector<double> units_of(const SkinnedModel& model) {
+std::vector<double> units_of(const SharedRig& rig) {
   std::vector<double> units;
-  for (const Trajectory& t : model.trajectories) {
+  for (const Trajectory& t : rig.trajectories) {
     const int shift = spatial_factor_bits(t.spatial_bits) - t.spatial_bits;
     units.push_back(exact_exp2(-shift) / kMaxLayerStep);
   }
@@ -42,8 +42,8 @@ std::vector<double> upper_triangle(std::vector<double> lower, std::size_t n) {
 
 }  // namespace
 
-ModelFactors::ModelFactors(const KeptModel& kept)
-    : kept_(kept), unit_(units_of(*kept.model)), system_({}, 0) {
+RigFactors::RigFactors(const KeptRig& kept)
+    : kept_(kept), unit_(units_of(*kept.rig)), system_({}, 0) {
   constexpr double kVanished = 1e-9;  // fixed: rounding
   const std::size_t n = count();
   std::vector<double> gram(n * n);
@@ -54,7 +54,7 @@ ModelFactors::ModelFactors(const KeptModel& kept)
   system_ = SymmetricSystem(upper_triangle(std::move(gram), n), n, kVanished);
 }
 
-std::vector<double> ModelFactors::of(std::size_t first, std::size_t num_vertices) const {
+std::vector<double> RigFactors::of(std::size_t first, std::size_t num_vertices) const {
   const std::size_t n = count();
   std::vector<double> factors(num_vertices * n);
   std::vector<std::int32_t> tile;
@@ -67,7 +67,7 @@ std::vector<double> ModelFactors::of(std::size_t first, std::size_t num_vertices
   return factors;
 }
 
-std::vector<double> ModelFactors::fit(const TrajectoryRows& displacement) const {
+std::vector<double> RigFactors::fit(const TrajectoryRows& displacement) const {
   const std::size_t n = count();
   const std::size_t width = displacement.num_frames;
   std::vector<double> temporal(n * width);
@@ -87,20 +87,20 @@ std::vector<double> ModelFactors::fit(const TrajectoryRows& displacement) const 
   return temporal;
 }
 
-void ModelRemainder::set_temporal(std::vector<double> temporal) {
+void RigRemainder::set_temporal(std::vector<double> temporal) {
   for (double& x : temporal) x = -x;
   negative_ = std::move(temporal);
 }
 
-TrajectoryRows ModelRemainder::rows() const {
+TrajectoryRows RigRemainder::rows() const {
   return {frames_.num_vertices, width(),
           [this](std::size_t first, std::span<double> rows) { write(first, rows); }};
 }
 
-void ModelRemainder::write(std::size_t first, std::span<double> rows) const {
+void RigRemainder::write(std::size_t first, std::span<double> rows) const {
   const std::size_t size = rows.size() / width();
   constexpr std::size_t kOfPass = 32;  // fixed: vertices of a pass
-  const SkinnedModel& model = *kept_.model;
+  const SharedRig& rig = *kept_.rig;
   for_ranges(size, kOfPass, [&](std::size_t i, std::size_t end) {
     MeanMotions motions(motions_);
     for (; i < end; ++i) {
@@ -108,7 +108,7 @@ void ModelRemainder::write(std::size_t first, std::span<double> rows) const {
       Point rest;
       for (std::size_t c = 0; c < 3; ++c) rest[c] = kept_.rest[c][v] / kPointScale;
       write_displacement(frames_, chosen_, v,
-                         motions.of(model.influences[v], model.weight_bits), rest,
+                         motions.of(rig.influences[v], rig.weight_bits), rest,
                          &rows[i * width()]);
     }
   });

@@ -1,4 +1,4 @@
-// The spatial factors of a skinned model as decoded, and the temporal values that suit them
+// The spatial factors of a shared rig as decoded, and the temporal values that suit them
 // best.
 #pragma once
 
@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "encoder/codec/kinds/skinned/quantise/kept_model.h"
+#include "encoder/codec/kinds/skinned/quantise/kept_rig.h"
 #include "encoder/codec/kinds/skinned/quantise/mean_motion.h"
 #include "encoder/codec/math/principal_components.h"
 #include "encoder/codec/math/symmetric_system.h"
@@ -14,10 +14,10 @@
 
 namespace rlpc {
 
-class ModelFactors {
+class RigFactors {
  public:
-  // Keeps a reference to the model.
-  explicit ModelFactors(const KeptModel& kept);
+  // Keeps a reference to the rig.
+  explicit RigFactors(const KeptRig& kept);
 
   std::size_t count() const { return unit_.size(); }
   // The sum of the squared factors of a trajectory.
@@ -29,18 +29,18 @@ class ModelFactors {
   std::vector<double> fit(const TrajectoryRows& displacement) const;
 
  private:
-  const KeptModel& kept_;
+  const KeptRig& kept_;
   std::vector<double> unit_;  // [trajectory], of normalised factors
   std::vector<double> energy_;
   SymmetricSystem system_;
 };
 
-// What the bones of a model leave of some frames and, once temporal values are set, what the
+// What the bones of a rig leave of some frames and, once temporal values are set, what the
 // trajectories leave, too.
-class ModelRemainder {
+class RigRemainder {
  public:
-  // motions: of the bones in the chosen frames. Keeps references to model, factors and frames.
-  ModelRemainder(const KeptModel& kept, const ModelFactors& factors, const SpanFrames& frames,
+  // motions: of the bones in the chosen frames. Keeps references to rig, factors and frames.
+  RigRemainder(const KeptRig& kept, const RigFactors& factors, const SpanFrames& frames,
                  std::vector<std::uint32_t> chosen, MotionsOfBones motions)
       : kept_(kept),
         factors_(factors),
@@ -57,8 +57,8 @@ class ModelRemainder {
  private:
   void write(std::size_t first, std::span<double> rows) const;
 
-  const KeptModel& kept_;
-  const ModelFactors& factors_;
+  const KeptRig& kept_;
+  const RigFactors& factors_;
   const SpanFrames& frames_;
   std::vector<std::uint32_t> chosen_;
   MotionsOfBones motions_;

@@ -1,4 +1,4 @@
-#include "encoder/codec/kinds/skinned/reuse/model_factors.h"
+#include "encoder/codec/kinds/skinned/reuse/rig_factors.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace rlpc {
 namespace {
 
 // Displacements that the factors make with these temporal values, and something else.
-TrajectoryRows product(const ModelFactors& factors, const std::vector<double>& temporal,
+TrajectoryRows product(const RigFactors& factors, const std::vector<double>& temporal,
                        std::size_t width, double other) {
   return {KeptTube::kVertices, width,
           [&factors, &temporal, width, other](std::size_t first, std::span<double> rows) {
@@ -32,9 +32,9 @@ TrajectoryRows product(const ModelFactors& factors, const std::vector<double>& t
           }};
 }
 
-TEST(ModelFactors, FitsTheTemporalValues) {
+TEST(RigFactors, FitsTheTemporalValues) {
   const KeptTube tube;
-  const ModelFactors factors(*tube.kept);
+  const RigFactors factors(*tube.kept);
   ASSERT_GT(factors.count(), 2U);
   constexpr std::size_t kWidth = 6;
   std::vector<double> temporal(factors.count() * kWidth);
@@ -53,20 +53,20 @@ TEST(ModelFactors, FitsTheTemporalValues) {
 }
 
 // A temporal value of a unit moves a vertex by its factor, as a decoder sees it.
-TEST(ModelFactors, AreThoseOfTheDecoder) {
+TEST(RigFactors, AreThoseOfTheDecoder) {
   const KeptTube tube;
-  const SkinnedModel& model = *tube.kept->model;
-  const ModelFactors factors(*tube.kept);
+  const SharedRig& rig = *tube.kept->rig;
+  const RigFactors factors(*tube.kept);
   SkinnedGof gof;
   gof.num_frames = 1;
-  gof.bones = model.bones;
+  gof.bones = rig.bones;
   for (Bone& bone : gof.bones) {
     bone.rotation_residual.resize(1);
     bone.origin_residual.resize(1);
   }
-  gof.trajectories = model.trajectories;
+  gof.trajectories = rig.trajectories;
   for (Trajectory& t : gof.trajectories) t.trajectory_flag = false;
-  use_model(tube.kept->model, gof);
+  use_rig(tube.kept->rig, gof);
   std::vector<std::int32_t> still(3 * KeptTube::kVertices);
   SkinnedRecon(tube.kept->recon, gof).frame(0, still);
   for (std::size_t l = 0; l < factors.count(); ++l) {
@@ -75,7 +75,7 @@ TEST(ModelFactors, AreThoseOfTheDecoder) {
     t.trajectory_flag = true;
     t.residual = {{3, 0, 0}};
     const int shift = spatial_factor_bits(t.spatial_bits) - t.spatial_bits;
-    ASSERT_TRUE(set_scale(8 * (4 - shift + model.fraction_bits) + 16, t.residual, t)) << l;
+    ASSERT_TRUE(set_scale(8 * (4 - shift + rig.fraction_bits) + 16, t.residual, t)) << l;
     std::vector<std::int32_t> moved(still.size());
     SkinnedRecon(tube.kept->recon, gof).frame(0, moved);
     const std::vector<double> of = factors.of(0, KeptTube::kVertices);

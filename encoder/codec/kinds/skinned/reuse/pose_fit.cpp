@@ -41,27 +41,27 @@ WantedPose pose_of(const Motion& motion, const Vec3d& pivot, const WantedPose* b
 
 }  // namespace
 
-PoseFit::PoseFit(const SkinnedModel& model,
+PoseFit::PoseFit(const SharedRig& rig,
                  const std::array<std::vector<std::int32_t>, 3>& rest)
-    : model_(model), moments_(model.bones.size()) {
-  const std::size_t n = model.influences.size();
+    : rig_(rig), moments_(rig.bones.size()) {
+  const std::size_t n = rig.influences.size();
   for (std::size_t v = 0; v < n; ++v) {
     rest_.push_back(Vec3d(rest[0][v], rest[1][v], rest[2][v]) / kPointScale);
     rest_centre_ += rest_.back() / static_cast<double>(n);
   }
-  const double unit = exact_exp2(-model.weight_bits);
+  const double unit = exact_exp2(-rig.weight_bits);
   for (std::size_t v = 0; v < n; ++v) {
     rest_[v] -= rest_centre_;
     auto& weights = weights_.emplace_back();
-    const Influence* largest = model.influences[v].begin();
-    for (const Influence& influence : model.influences[v]) {
+    const Influence* largest = rig.influences[v].begin();
+    for (const Influence& influence : rig.influences[v]) {
       weights.push_back({influence.bone, influence.weight * unit});
       if (influence.weight > largest->weight) largest = &influence;
     }
     nearest_.push_back(largest->bone);
     moments_.add(rest_[v], weights);
   }
-  for (const Bone& bone : model.bones) {
+  for (const Bone& bone : rig.bones) {
     is_free_ = is_free_ && bone.rotation_flag && bone.origin_flag;
   }
 }
@@ -69,7 +69,7 @@ PoseFit::PoseFit(const SkinnedModel& model,
 // Each bone moves as the vertices that follow it most, or else as its parent.
 PoseFit::Motions PoseFit::rigid_motions(const SpanFrames& frames, std::uint32_t frame,
                                         const Vec3d& centre) const {
-  const std::size_t n = model_.bones.size();
+  const std::size_t n = rig_.bones.size();
   std::vector<MotionFit> fits(n);
   std::vector<std::uint32_t> counts(n);
   for (std::uint32_t v = 0; v < frames.num_vertices; ++v) {
@@ -79,7 +79,7 @@ PoseFit::Motions PoseFit::rigid_motions(const SpanFrames& frames, std::uint32_t 
   constexpr std::uint32_t kDetermined = 3;  // fixed: points that determine a rigid motion
   Motions motions;
   for (std::size_t b = 0; b < n; ++b) {
-    const std::int32_t parent = model_.bones[b].parent;
+    const std::int32_t parent = rig_.bones[b].parent;
     const bool as_parent = counts[b] < kDetermined && parent >= 0;
     motions.push_back(as_parent ? motions[static_cast<std::size_t>(parent)] : fits[b].motion());
   }
@@ -90,7 +90,7 @@ PoseFit::Motions PoseFit::rigid_motions(const SpanFrames& frames, std::uint32_t 
 void PoseFit::keep_joints(std::span<const Motion> targets, const Vec3d& centre,
                           Motions& motions) const {
   for (std::size_t b = 0; b < motions.size(); ++b) {
-    const Bone& bone = model_.bones[b];
+    const Bone& bone = rig_.bones[b];
     const Vec3d pivot = point_of(bone.pivot) - rest_centre_;
     const Motion* parent =
         bone.parent < 0 ? nullptr : &motions[static_cast<std::size_t>(bone.parent)];
@@ -132,7 +132,7 @@ void PoseFit::fit_some(const SpanFrames& frames, std::span<const std::uint32_t> 
                        std::span<Motions> motions) const {
   std::vector<Vec3d> centres;
   for (const std::uint32_t f : chosen) centres.push_back(centre_of(frames, f));
-  PoseTargets targets(model_.bones.size(), chosen.size());
+  PoseTargets targets(rig_.bones.size(), chosen.size());
   std::vector<Vec3d> trajectory(chosen.size());
   for (std::uint32_t v = 0; v < frames.num_vertices; ++v) {
     for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -158,9 +158,9 @@ std::vector<std::vector<WantedPose>> PoseFit::fit(const SpanFrames& frames,
     fit_some(frames, chosen.subspan(first, end - first),
              std::span(motions).subspan(first, end - first));
   });
-  std::vector<std::vector<WantedPose>> poses(model_.bones.size());
+  std::vector<std::vector<WantedPose>> poses(rig_.bones.size());
   for (std::size_t b = 0; b < poses.size(); ++b) {
-    const Vec3d pivot = point_of(model_.bones[b].pivot);
+    const Vec3d pivot = point_of(rig_.bones[b].pivot);
     for (const Motions& of_frame : motions) {
       poses[b].push_back(
           pose_of(of_frame[b], pivot, poses[b].empty() ? nullptr : &poses[b].back()));

@@ -1,4 +1,4 @@
-// Fits the bones of a skinned model, as it was coded, to further frames.
+// Fits the bones of a shared rig, as it was coded, to further frames.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ namespace rlpc {
 
 class PoseFit {
  public:
-  // rest: rest positions, 1/16 grid units. Keeps a reference to the model.
-  PoseFit(const SkinnedModel& model, const std::array<std::vector<std::int32_t>, 3>& rest);
+  // rest: rest positions, 1/16 grid units. Keeps a reference to the rig.
+  PoseFit(const SharedRig& rig, const std::array<std::vector<std::int32_t>, 3>& rest);
 
   // The poses of all bones in some frames, [bone][frame], as joints and bones that do not
   // rotate allow. Quaternions keep their sign from frame to frame.
@@ -33,7 +33,7 @@ class PoseFit {
   void keep_joints(std::span<const Motion> targets, const Vec3d& centre,
                    Motions& motions) const;
 
-  const SkinnedModel& model_;
+  const SharedRig& rig_;
   Vec3d rest_centre_ = Vec3d::Zero();            // the positions below are relative to it
   std::vector<Vec3d> rest_;                      // [vertex]
   std::vector<std::vector<RigWeight>> weights_;  // [vertex]

@@ -17,18 +17,18 @@ constexpr std::uint32_t kVertices = 60;
 // Two bones along x that meet in the middle, where vertices follow both.
 struct Arm {
   Arm() {
-    model.weight_bits = 6;
-    model.bones.resize(2);
-    for (Bone& bone : model.bones) bone.rotation_flag = bone.origin_flag = true;
-    model.bones[1].parent = 0;
-    model.bones[1].pivot = {16 * 3000, 0, 0};
+    rig.weight_bits = 6;
+    rig.bones.resize(2);
+    for (Bone& bone : rig.bones) bone.rotation_flag = bone.origin_flag = true;
+    rig.bones[1].parent = 0;
+    rig.bones[1].pivot = {16 * 3000, 0, 0};
     for (std::uint32_t v = 0; v < kVertices; ++v) {
       const std::array<double, 3> p{100.0 * v, 500.0 * std::sin(1.1 * v),
                                     400.0 * std::cos(2.3 * v)};
       for (std::size_t c = 0; c < 3; ++c) {
         rest[c].push_back(static_cast<std::int32_t>(std::lround(16.0 * p[c])));
       }
-      Influences& of = model.influences.emplace_back();
+      Influences& of = rig.influences.emplace_back();
       const int second = v < 25 ? 0 : v < 35 ? 6 * static_cast<int>(v - 24) - 2 : 64;
       if (second < 64) of.list[of.size++] = {0, static_cast<std::uint16_t>(64 - second)};
       if (second > 0) of.list[of.size++] = {1, static_cast<std::uint16_t>(second)};
@@ -41,7 +41,7 @@ struct Arm {
     for (std::uint32_t f = 0; f < num_frames; ++f) {
       const double half = 0.3 * std::sin(0.5 * f);
       const double bend = half + 0.4 * std::cos(0.8 * f);
-      const bool turns = model.bones[0].rotation_flag;
+      const bool turns = rig.bones[0].rotation_flag;
       const double first = turns ? half : 0.0;
       WantedPose root{{std::cos(first), 0.0, 0.0, std::sin(first)}, {800.0 * f, 100.0, 0.0}};
       const double c = std::cos(2.0 * first);
@@ -58,12 +58,12 @@ struct Arm {
     SpanFrames frames{kVertices, static_cast<std::uint32_t>(poses[0].size()), {}, 0, 1, false};
     MotionsOfBones motions;
     for (std::size_t b = 0; b < 2; ++b) {
-      motions.push_back(motions_of(model.bones[b].pivot, poses[b]));
+      motions.push_back(motions_of(rig.bones[b].pivot, poses[b]));
     }
     frames.xyz.resize(std::size_t{3} * kVertices * frames.num_frames);
     MeanMotions means(motions);
     for (std::uint32_t v = 0; v < kVertices; ++v) {
-      const auto mean = means.of(model.influences[v], model.weight_bits);
+      const auto mean = means.of(rig.influences[v], rig.weight_bits);
       for (std::uint32_t f = 0; f < frames.num_frames; ++f) {
         for (std::size_t c = 0; c < 3; ++c) {
           double x = mean[f].shift[c];
@@ -75,7 +75,7 @@ struct Arm {
     return frames;
   }
 
-  SkinnedModel model;
+  SharedRig rig;
   std::array<std::vector<std::int32_t>, 3> rest;
 };
 
@@ -99,7 +99,7 @@ TEST(PoseFit, FindsThePosesOfAllBones) {
   const Arm arm;
   const auto wanted = arm.poses(20, 700.0);
   const SpanFrames frames = arm.moved(wanted);
-  const PoseFit fit(arm.model, arm.rest);
+  const PoseFit fit(arm.rig, arm.rest);
   const auto found = fit.fit(frames, numbers_from(0, 20));
   expect_near(found, wanted, 16.0);
   // A single frame starts afresh.
@@ -111,7 +111,7 @@ TEST(PoseFit, FindsThePosesOfAllBones) {
 TEST(PoseFit, QuaternionsKeepTheirSign) {
   const Arm arm;
   const SpanFrames frames = arm.moved(arm.poses(20, 0.0));
-  for (const auto& of_bone : PoseFit(arm.model, arm.rest).fit(frames, numbers_from(0, 20))) {
+  for (const auto& of_bone : PoseFit(arm.rig, arm.rest).fit(frames, numbers_from(0, 20))) {
     for (std::size_t f = 1; f < of_bone.size(); ++f) {
       double same = 0.0;
       for (std::size_t k = 0; k < 4; ++k) {
@@ -124,14 +124,14 @@ TEST(PoseFit, QuaternionsKeepTheirSign) {
 
 TEST(PoseFit, PinnedBonesKeepTheirJoint) {
   Arm arm;
-  arm.model.bones[1].origin_flag = false;
+  arm.rig.bones[1].origin_flag = false;
   const auto wanted = arm.poses(20, 0.0);
-  expect_near(PoseFit(arm.model, arm.rest).fit(arm.moved(wanted), numbers_from(0, 20)), wanted,
+  expect_near(PoseFit(arm.rig, arm.rest).fit(arm.moved(wanted), numbers_from(0, 20)), wanted,
               16.0);
   // Where the joint opens, the child still begins where the parent ends.
   const SpanFrames open = arm.moved(arm.poses(20, 900.0));
-  const auto found = PoseFit(arm.model, arm.rest).fit(open, numbers_from(0, 20));
-  const auto motions = motions_of(arm.model.bones[0].pivot, found[0]);
+  const auto found = PoseFit(arm.rig, arm.rest).fit(open, numbers_from(0, 20));
+  const auto motions = motions_of(arm.rig.bones[0].pivot, found[0]);
   for (std::size_t f = 0; f < 20; ++f) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double carried = motions[f].shift[c] + motions[f].turn[0][c] * 3000.0;
@@ -142,9 +142,9 @@ TEST(PoseFit, PinnedBonesKeepTheirJoint) {
 
 TEST(PoseFit, BonesThatDoNotRotateMoveAlong) {
   Arm arm;
-  arm.model.bones[0].rotation_flag = false;
+  arm.rig.bones[0].rotation_flag = false;
   const auto wanted = arm.poses(20, 0.0);
-  const auto found = PoseFit(arm.model, arm.rest).fit(arm.moved(wanted), numbers_from(0, 20));
+  const auto found = PoseFit(arm.rig, arm.rest).fit(arm.moved(wanted), numbers_from(0, 20));
   expect_near(found, wanted, 16.0);
   for (const WantedPose& pose : found[0]) EXPECT_NEAR(pose.rotation[0], 1.0, 1e-12);
 }

@@ -14,7 +14,7 @@
 #include "encoder/codec/kinds/skinned/quantise/span_tracks.h"
 #include "encoder/codec/kinds/skinned/quantise/spatial_left.h"
 #include "encoder/codec/kinds/skinned/quantise/temporal_values.h"
-#include "encoder/codec/kinds/skinned/reuse/model_factors.h"
+#include "encoder/codec/kinds/skinned/reuse/rig_factors.h"
 #include "encoder/codec/kinds/skinned/reuse/pose_fit.h"
 #include "encoder/codec/kinds/skinned/search/span_units.h"
 #include "encoder/codec/math/det_math.h"
@@ -27,18 +27,18 @@ namespace {
 
 class SpanReuse {
  public:
-  SpanReuse(const SkinnedContext& context, const KeptModel& kept, const SpanFrames& frames,
+  SpanReuse(const SkinnedContext& context, const KeptRig& kept, const SpanFrames& frames,
             double step)
       : context_(context),
         kept_(kept),
-        model_(*kept.model),
-        mesh_(context.meshes[model_.prediction]),
+        rig_(*kept.rig),
+        mesh_(context.meshes[rig_.prediction]),
         frames_(frames),
         step_(step),
         settings_(usual_settings(context.settings)),
-        poses_(model_, kept.rest),
+        poses_(rig_, kept.rest),
         factors_(kept) {
-    settings_.prediction = model_.prediction;
+    settings_.prediction = rig_.prediction;
     const std::size_t most =
         std::min<std::size_t>(settings_.max_trajectories, kLevels.back().max_components);
     settings_.max_trajectories = most - std::min(most, factors_.count());
@@ -59,18 +59,18 @@ class SpanReuse {
   int eighths_of(std::size_t l, double largest) const;
   LocalGroup local_group(const FrameRange& span) const;
   // What is left in frames of the span; temporal values as decoded.
-  ModelRemainder remainder(const FrameRange& span, bool has_temporal) const;
+  RigRemainder remainder(const FrameRange& span, bool has_temporal) const;
   double least_energy() const { return step_ * step_ / 12.0 * frames_.num_vertices; }
 
   const SkinnedContext& context_;
-  const KeptModel& kept_;
-  const SkinnedModel& model_;
+  const KeptRig& kept_;
+  const SharedRig& rig_;
   const OrderedMesh& mesh_;
   const SpanFrames& frames_;
   double step_;
   SkinnedSettings settings_;  // max_trajectories: of local component groups
   PoseFit poses_;
-  ModelFactors factors_;
+  RigFactors factors_;
   // As coded:
   std::vector<SkinnedGof> gofs_;
   std::vector<BoneMotion> bones_;
@@ -78,7 +78,7 @@ class SpanReuse {
 };
 
 // The least that local component groups are expected to cost, with what they leave; from a
-// sample of the frames. Bones and trajectories of the model are taken to be exact and free.
+// sample of the frames. Bones and trajectories of the rig are taken to be exact and free.
 double SpanReuse::expected_cost() const {
   constexpr std::uint32_t kFrames = 12;  // fixed: enough to reject a span
   const std::uint32_t count = std::min(kFrames, frames_.num_frames);
@@ -87,16 +87,16 @@ double SpanReuse::expected_cost() const {
     chosen.push_back(static_cast<std::uint32_t>(
         (2 * std::uint64_t{i} + 1) * frames_.num_frames / (2 * std::uint64_t{count})));
   }
-  std::vector<std::vector<WantedPose>> poses(model_.bones.size());
+  std::vector<std::vector<WantedPose>> poses(rig_.bones.size());
   for (const std::uint32_t f : chosen) {
     const auto of_frame = poses_.fit(frames_, std::span(&f, 1));
     for (std::size_t b = 0; b < poses.size(); ++b) poses[b].push_back(of_frame[b].front());
   }
   MotionsOfBones motions;
   for (std::size_t b = 0; b < poses.size(); ++b) {
-    motions.push_back(motions_of(model_.bones[b].pivot, poses[b]));
+    motions.push_back(motions_of(rig_.bones[b].pivot, poses[b]));
   }
-  ModelRemainder left(kept_, factors_, frames_, chosen, std::move(motions));
+  RigRemainder left(kept_, factors_, frames_, chosen, std::move(motions));
   left.set_temporal(factors_.fit(left.rows()));
   const double frames_in_gof = static_cast<double>(frames_.num_frames) / frames_.num_gofs;
   const double part = frames_in_gof / count;
@@ -122,15 +122,15 @@ void SpanReuse::code_bones() {
   gofs_ = gofs_of_span(frames_, settings_.track_levels);
   SpanBones bones(gofs_, track_options(settings_));
   const auto poses = poses_.fit(frames_, numbers_from(0, frames_.num_frames));
-  for (std::size_t b = 0; b < poses.size(); ++b) bones.add(model_.bones[b], poses[b]);
+  for (std::size_t b = 0; b < poses.size(); ++b) bones.add(rig_.bones[b], poses[b]);
   bones_ = std::move(bones.motions());
 }
 
-ModelRemainder SpanReuse::remainder(const FrameRange& span, bool has_temporal) const {
+RigRemainder SpanReuse::remainder(const FrameRange& span, bool has_temporal) const {
   MotionsOfBones motions;
   for (const BoneMotion& bone : bones_)
     motions.push_back(motions_of(bone, span.first, span.count));
-  ModelRemainder left(kept_, factors_, frames_, numbers_from(span.first, span.count),
+  RigRemainder left(kept_, factors_, frames_, numbers_from(span.first, span.count),
                       std::move(motions));
   if (!has_temporal || factors_.count() == 0) return left;
   std::vector<double> temporal;
@@ -146,21 +146,21 @@ ModelRemainder SpanReuse::remainder(const FrameRange& span, bool has_temporal) c
 // The exponent of the step of temporal values, 2^(eighths / 8), which has the same meaning as
 // in TemporalValues. largest: magnitude of the values.
 int SpanReuse::eighths_of(std::size_t l, double largest) const {
-  const double wanted = step_ * std::sqrt(temporal_error(model_) / factors_.energy(l));
+  const double wanted = step_ * std::sqrt(temporal_error(rig_) / factors_.energy(l));
   return static_cast<int>(
       round_to_int(8.0 * det_log2(std::max(wanted, largest / kMostTemporal))));
 }
 
-// Codes a trajectory of the model. wanted: [3][num_frames]. None: its values do not fit.
+// Codes a trajectory of the rig. wanted: [3][num_frames]. None: its values do not fit.
 std::optional<SpanReuse::CodedTrajectory> SpanReuse::code_trajectory(
     std::size_t l, std::span<const double> wanted, const SpanTracks& tracks) const {
   const double largest =
       std::abs(*std::max_element(wanted.begin(), wanted.end(),
                                  [](double a, double b) { return std::abs(a) < std::abs(b); }));
   if (!(factors_.energy(l) > 0.0 && largest > 0.0)) return std::nullopt;
-  const int spatial_bits = model_.trajectories[l].spatial_bits;
+  const int spatial_bits = rig_.trajectories[l].spatial_bits;
   const int shift = spatial_factor_bits(spatial_bits) - spatial_bits;
-  const int of_scale = 8 * (4 - shift + model_.fraction_bits);  // scale_idx minus eighths
+  const int of_scale = 8 * (4 - shift + rig_.fraction_bits);  // scale_idx minus eighths
   const int scale_idx = std::max(eighths_of(l, largest) + of_scale, 0);
   if (scale_idx > kMaxScaleIdx) return std::nullopt;
   const double unit = power_of_eighths(scale_idx - of_scale);
@@ -209,10 +209,10 @@ void SpanReuse::code_trajectories() {
 
 LocalGroup SpanReuse::local_group(const FrameRange& span) const {
   if (settings_.max_trajectories == 0) return {};
-  ModelRemainder left = remainder(span, true);
+  RigRemainder left = remainder(span, true);
   SkinnedAnalysis analysis;
-  analysis.model = model_;
-  analysis.model.trajectories.clear();
+  analysis.rig = rig_;
+  analysis.rig.trajectories.clear();
   analysis.gofs.resize(1);
   analysis.gofs[0].num_frames = span.count;
   analysis.gofs[0].track_levels = settings_.track_levels;
@@ -227,7 +227,7 @@ EncodedSpan SpanReuse::encode() {
   code_trajectories();
   const SpanUnits units(mesh_, context_.header, settings_.temporal_layers);
   std::vector<LocalGroup> groups(gofs_.size());
-  EncodedSpan without = units.with_earlier_model(kept_, gofs_, groups);
+  EncodedSpan without = units.with_earlier_rig(kept_, gofs_, groups);
   const std::vector<FrameRange> spans = frames_.gofs();
   bool has_groups = false;
   for (std::size_t g = 0; g < spans.size(); ++g) {
@@ -235,17 +235,17 @@ EncodedSpan SpanReuse::encode() {
     has_groups = has_groups || !groups[g].trajectories.empty();
   }
   if (!has_groups) return without;
-  EncodedSpan with = units.with_earlier_model(kept_, std::move(gofs_), std::move(groups));
+  EncodedSpan with = units.with_earlier_rig(kept_, std::move(gofs_), std::move(groups));
   const double cost = lagrangian_cost(with, frames_, step_);
   return cost < lagrangian_cost(without, frames_, step_) ? std::move(with) : std::move(without);
 }
 
 }  // namespace
 
-std::optional<EncodedSpan> encode_with_model(const SkinnedContext& context,
-                                             const KeptModel& kept, const SpanFrames& frames,
+std::optional<EncodedSpan> encode_with_rig(const SkinnedContext& context,
+                                             const KeptRig& kept, const SpanFrames& frames,
                                              double step, double most) {
-  // tuned (off: 1e9): A span is encoded with an earlier model if its expected cost is at most
+  // tuned (off: 1e9): A span is encoded with an earlier rig if its expected cost is at most
   // this multiple of what it must not exceed. Expectations are too high: they leave out that
   // weights of prediction adapt.
   constexpr double kHopeful = 2.0;

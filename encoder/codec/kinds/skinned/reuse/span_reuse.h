@@ -1,9 +1,9 @@
-// Encodes a span with the skinned model of an earlier one: as GOFs of tracks alone.
+// Encodes a span with the shared rig of an earlier one: as GOFs of tracks alone.
 #pragma once
 
 #include <optional>
 
-#include "encoder/codec/kinds/skinned/quantise/kept_model.h"
+#include "encoder/codec/kinds/skinned/quantise/kept_rig.h"
 #include "encoder/codec/kinds/skinned/search/skinned_context.h"
 #include "encoder/codec/spans/span_coder.h"
 #include "encoder/codec/spans/span_frames.h"
@@ -12,8 +12,8 @@ namespace rlpc {
 
 // None: it costs at least `most` (Lagrangian cost), or is expected to cost far more. step:
 // quantiser step, grid units.
-std::optional<EncodedSpan> encode_with_model(const SkinnedContext& context,
-                                             const KeptModel& kept, const SpanFrames& frames,
+std::optional<EncodedSpan> encode_with_rig(const SkinnedContext& context,
+                                             const KeptRig& kept, const SpanFrames& frames,
                                              double step, double most);
 
 }  // namespace rlpc

@@ -27,11 +27,11 @@ TEST(SpanReuse, FurtherFramesOfTheSameMotionTakeTracksAlone) {
   const SpanFrames later = KeptTube::frames(bent, 40, 32);
   const EncodedSpan own = tube.encode_alone(later);
   const double most = lagrangian_cost(own, later, kTubeStep);
-  const auto encoded = encode_with_model(tube.context, *tube.kept, later, kTubeStep, most);
+  const auto encoded = encode_with_rig(tube.context, *tube.kept, later, kTubeStep, most);
   ASSERT_TRUE(encoded);
-  for (const auto& unit : encoded->units) EXPECT_NE(unit.type, UnitType::kModel);
+  for (const auto& unit : encoded->units) EXPECT_NE(unit.type, UnitType::kRig);
   EXPECT_EQ(encoded->units.front().type, UnitType::kGof);
-  EXPECT_FALSE(encoded->model);
+  EXPECT_FALSE(encoded->rig);
   EXPECT_LT(bits_of(*encoded), 0.6 * bits_of(own));
   EXPECT_LT(rms_error(later, *encoded), 1.2 * rms_error(later, own));
 }
@@ -39,7 +39,7 @@ TEST(SpanReuse, FurtherFramesOfTheSameMotionTakeTracksAlone) {
 TEST(SpanReuse, SpansMayHaveSeveralGofs) {
   const KeptTube tube;
   const SpanFrames later = KeptTube::frames(bent, 40, 33, 3);
-  const auto encoded = encode_with_model(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
+  const auto encoded = encode_with_rig(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
   ASSERT_TRUE(encoded);
   std::uint32_t gofs = 0;
   for (const auto& unit : encoded->units) gofs += unit.type == UnitType::kGof ? 1 : 0;
@@ -57,22 +57,22 @@ TEST(SpanReuse, OtherMotionGetsLocalComponentGroups) {
         return moved;
       },
       40, 32);
-  const auto encoded = encode_with_model(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
+  const auto encoded = encode_with_rig(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
   ASSERT_TRUE(encoded);
-  EXPECT_GT(encoded->max_components, tube.kept->model->trajectories.size());
+  EXPECT_GT(encoded->max_components, tube.kept->rig->trajectories.size());
   EXPECT_GT(encoded->num_factors,
             std::uint64_t{3 + encoded->max_components} * KeptTube::kVertices);
   const double own = rms_error(later, tube.encode_alone(later));
   EXPECT_LT(rms_error(later, *encoded), 1.3 * own);
 }
 
-// Finer ones than that of the model need local component groups.
+// Finer ones than that of the rig need local component groups.
 TEST(SpanReuse, ErrorsFollowTheStep) {
   const KeptTube tube;
   const SpanFrames later = KeptTube::frames(bent, 40, 32);
   double last = 1e9;
   for (const double step : {64.0, 16.0, 2.0}) {
-    const auto encoded = encode_with_model(tube.context, *tube.kept, later, step, kNoLimit);
+    const auto encoded = encode_with_rig(tube.context, *tube.kept, later, step, kNoLimit);
     ASSERT_TRUE(encoded);
     const double error = rms_error(later, *encoded);
     EXPECT_LT(error, 0.9 * last) << step;
@@ -90,15 +90,15 @@ TEST(SpanReuse, RefusesWhatCostsMore) {
       },
       40, 32);
   const double most = 0.5 * lagrangian_cost(tube.encode_alone(later), later, kTubeStep);
-  EXPECT_FALSE(encode_with_model(tube.context, *tube.kept, later, kTubeStep, most));
+  EXPECT_FALSE(encode_with_rig(tube.context, *tube.kept, later, kTubeStep, most));
 }
 
 TEST(SpanReuse, GivesTheSameBytesOnSeveralThreads) {
   const KeptTube tube;
   const SpanFrames later = KeptTube::frames(bent, 40, 40, 2);
-  const auto one = encode_with_model(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
+  const auto one = encode_with_rig(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
   const Threads threads(3);
-  const auto three = encode_with_model(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
+  const auto three = encode_with_rig(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
   ASSERT_TRUE(one && three);
   ASSERT_EQ(one->units.size(), three->units.size());
   for (std::size_t i = 0; i < one->units.size(); ++i) {
@@ -110,7 +110,7 @@ TEST(SpanReuse, CutsOfTemporalLayersDecode) {
   KeptTube tube;
   tube.settings.main.temporal_layers = 2;
   const SpanFrames later = KeptTube::frames(bent, 40, 32);
-  const auto encoded = encode_with_model(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
+  const auto encoded = encode_with_rig(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
   ASSERT_TRUE(encoded && encoded->cut);
   const double all = squared_error(later, encoded->frame);
   EXPECT_EQ(squared_error(later, encoded->cut(2)), all);

@@ -107,9 +107,9 @@ EncodedSpan encode_skinned_gof(const SkinnedContext& context, const SkinnedAnaly
   const OrderedMesh& mesh = context.meshes[settings.prediction];
   CodedSpan coded = code_skinned_span(mesh, analysis, settings, step);
   const SpanUnits units(mesh, context.header, settings.temporal_layers);
-  if (has_followers) return units.with_kept_model(std::move(coded), analysis.rest);
+  if (has_followers) return units.with_kept_rig(std::move(coded), analysis.rest);
   return coded.gofs.size() == 1 ? units.alone(std::move(coded))
-                                : units.with_model(std::move(coded));
+                                : units.with_rig(std::move(coded));
 }
 
 }  // namespace rlpc

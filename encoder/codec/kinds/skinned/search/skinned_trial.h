@@ -74,7 +74,7 @@ SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const SpanFrame
                                   const SkinnedAnalysis* before = nullptr);
 
 // Quantises the trajectories and writes the units. step: quantiser step, grid units.
-// has_followers: with a skinned model that later spans may use.
+// has_followers: with a shared rig that later spans may use.
 EncodedSpan encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,
                                const SkinnedSettings& settings, double step,
                                bool has_followers);

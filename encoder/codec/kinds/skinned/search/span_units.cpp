@@ -37,14 +37,14 @@ DecodeFrame frames_of(std::vector<std::shared_ptr<const SkinnedRecon>> recons) {
 }
 
 // Local component groups add trajectories with factors of their own.
-void count(const SkinnedModel& model, std::uint64_t num_vertices,
+void count(const SharedRig& rig, std::uint64_t num_vertices,
            std::span<const SkinnedGof> gofs, EncodedSpan& encoded) {
-  const std::uint64_t num_bones = model.bones.size();
-  const std::uint64_t shared = model.trajectories.size();
+  const std::uint64_t num_bones = rig.bones.size();
+  const std::uint64_t shared = rig.trajectories.size();
   encoded.clusters = static_cast<std::uint32_t>(num_bones);
   encoded.max_clusters = encoded.clusters;
   encoded.components = static_cast<std::uint32_t>(shared);
-  encoded.adaptive_values = model.weights.num_adaptive_factors * num_vertices;
+  encoded.adaptive_values = rig.weights.num_adaptive_factors * num_vertices;
   for (const SkinnedGof& gof : gofs) {
     const std::uint64_t all = std::max<std::uint64_t>(shared, gof.trajectories.size());
     encoded.components += static_cast<std::uint32_t>(all - shared);
@@ -58,16 +58,16 @@ void count(const SkinnedModel& model, std::uint64_t num_vertices,
 }  // namespace
 
 // values: known, or empty.
-SpanUnits::SharedRecon SpanUnits::recon_of(const SkinnedModel& model,
+SpanUnits::SharedRecon SpanUnits::recon_of(const SharedRig& rig,
                                            std::span<const std::int32_t> values) const {
   return values.empty()
-             ? std::make_shared<ModelRecon>(mesh_, model, header_.position_bits, false)
-             : std::make_shared<ModelRecon>(mesh_, model, header_.position_bits, values);
+             ? std::make_shared<RigRecon>(mesh_, rig, header_.position_bits, false)
+             : std::make_shared<RigRecon>(mesh_, rig, header_.position_bits, values);
 }
 
 EncodedSpan SpanUnits::alone(CodedSpan coded) const {
   EncodedSpan encoded;
-  count(coded.model, mesh_.num_vertices(), coded.gofs, encoded);
+  count(coded.rig, mesh_.num_vertices(), coded.gofs, encoded);
   const std::vector<std::int32_t> values = std::move(coded.values);
   auto gof = std::make_shared<SkinnedGof>(merge_into_gof(std::move(coded)));
   set_temporal_layers(temporal_layers_, *gof);
@@ -88,8 +88,8 @@ EncodedSpan SpanUnits::alone(CodedSpan coded) const {
   return encoded;
 }
 
-void SpanUnits::write_model(const SkinnedModel& model, EncodedSpan& encoded) const {
-  add_units(write_skinned_model(model, kModelIdx, mesh_, header_), UnitType::kModel, encoded);
+void SpanUnits::write_rig(const SharedRig& rig, EncodedSpan& encoded) const {
+  add_units(write_shared_rig(rig, kRigIdx, mesh_, header_), UnitType::kRig, encoded);
 }
 
 // GOFs of tracks, complete but for temporal layers.
@@ -113,43 +113,43 @@ void SpanUnits::write_gofs(const SharedRecon& recon, std::vector<SkinnedGof> gof
   encoded.frame = frames_of(std::move(recons));
 }
 
-EncodedSpan SpanUnits::with_model(CodedSpan coded) const {
+EncodedSpan SpanUnits::with_rig(CodedSpan coded) const {
   EncodedSpan encoded;
-  count(coded.model, mesh_.num_vertices(), coded.gofs, encoded);
-  const auto model = std::make_shared<const SkinnedModel>(std::move(coded.model));
-  write_model(*model, encoded);
-  const SharedRecon recon = recon_of(*model, coded.values);
-  for (SkinnedGof& gof : coded.gofs) use_model(model, gof);
+  count(coded.rig, mesh_.num_vertices(), coded.gofs, encoded);
+  const auto rig = std::make_shared<const SharedRig>(std::move(coded.rig));
+  write_rig(*rig, encoded);
+  const SharedRecon recon = recon_of(*rig, coded.values);
+  for (SkinnedGof& gof : coded.gofs) use_rig(rig, gof);
   write_gofs(recon, std::move(coded.gofs), encoded);
   return encoded;
 }
 
-EncodedSpan SpanUnits::with_kept_model(
+EncodedSpan SpanUnits::with_kept_rig(
     CodedSpan coded, const std::array<std::vector<std::int32_t>, 3>& rest) const {
   EncodedSpan encoded;
-  count(coded.model, mesh_.num_vertices(), coded.gofs, encoded);
-  write_model(coded.model, encoded);
-  auto kept = std::make_shared<KeptModel>();
+  count(coded.rig, mesh_.num_vertices(), coded.gofs, encoded);
+  write_rig(coded.rig, encoded);
+  auto kept = std::make_shared<KeptRig>();
   kept->recon =
-      std::make_shared<const ModelRecon>(mesh_, coded.model, header_.position_bits, true);
-  coded.model.vertex_residual = {};
-  coded.model.counterparts = {};
-  kept->model = std::make_shared<const SkinnedModel>(std::move(coded.model));
+      std::make_shared<const RigRecon>(mesh_, coded.rig, header_.position_bits, true);
+  coded.rig.vertex_residual = {};
+  coded.rig.counterparts = {};
+  kept->rig = std::make_shared<const SharedRig>(std::move(coded.rig));
   kept->rest = rest;
-  for (SkinnedGof& gof : coded.gofs) use_model(kept->model, gof);
+  for (SkinnedGof& gof : coded.gofs) use_rig(kept->rig, gof);
   write_gofs(kept->recon, std::move(coded.gofs), encoded);
-  encoded.model = std::move(kept);
+  encoded.rig = std::move(kept);
   return encoded;
 }
 
-EncodedSpan SpanUnits::with_earlier_model(const KeptModel& kept, std::vector<SkinnedGof> gofs,
+EncodedSpan SpanUnits::with_earlier_rig(const KeptRig& kept, std::vector<SkinnedGof> gofs,
                                           std::vector<LocalGroup> local_groups) const {
   for (std::size_t g = 0; g < gofs.size(); ++g) {
-    use_model(kept.model, gofs[g]);
+    use_rig(kept.rig, gofs[g]);
     add_local_group(std::move(local_groups[g]), gofs[g]);
   }
   EncodedSpan encoded;
-  count(*kept.model, mesh_.num_vertices(), gofs, encoded);
+  count(*kept.rig, mesh_.num_vertices(), gofs, encoded);
   write_gofs(kept.recon, std::move(gofs), encoded);
   return encoded;
 }

@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "common/codec/kinds/skinned/recon/model_recon.h"
+#include "common/codec/kinds/skinned/recon/rig_recon.h"
 #include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/syntax/sequence_header.h"
-#include "encoder/codec/kinds/skinned/quantise/kept_model.h"
+#include "encoder/codec/kinds/skinned/quantise/kept_rig.h"
 #include "encoder/codec/kinds/skinned/quantise/skinned_gof_encoder.h"
 #include "encoder/codec/spans/span_coder.h"
 
@@ -23,21 +23,21 @@ class SpanUnits {
 
   // The only GOF of a span, with vertices of its own.
   EncodedSpan alone(CodedSpan coded) const;
-  // A skinned model and GOFs of tracks.
-  EncodedSpan with_model(CodedSpan coded) const;
-  // The same; later spans may use the model. rest: as decoded, 1/16 grid units.
-  EncodedSpan with_kept_model(CodedSpan coded,
+  // A shared rig and GOFs of tracks.
+  EncodedSpan with_rig(CodedSpan coded) const;
+  // The same; later spans may use the rig. rest: as decoded, 1/16 grid units.
+  EncodedSpan with_kept_rig(CodedSpan coded,
                               const std::array<std::vector<std::int32_t>, 3>& rest) const;
-  // GOFs of tracks of an earlier model. local_groups [GOF].
-  EncodedSpan with_earlier_model(const KeptModel& kept, std::vector<SkinnedGof> gofs,
+  // GOFs of tracks of an earlier rig. local_groups [GOF].
+  EncodedSpan with_earlier_rig(const KeptRig& kept, std::vector<SkinnedGof> gofs,
                                  std::vector<LocalGroup> local_groups) const;
 
  private:
-  using SharedRecon = std::shared_ptr<const ModelRecon>;
+  using SharedRecon = std::shared_ptr<const RigRecon>;
 
-  SharedRecon recon_of(const SkinnedModel& model, std::span<const std::int32_t> values) const;
+  SharedRecon recon_of(const SharedRig& rig, std::span<const std::int32_t> values) const;
 
-  void write_model(const SkinnedModel& model, EncodedSpan& encoded) const;
+  void write_rig(const SharedRig& rig, EncodedSpan& encoded) const;
   void write_gofs(const SharedRecon& recon, std::vector<SkinnedGof> gofs,
                   EncodedSpan& encoded) const;
 

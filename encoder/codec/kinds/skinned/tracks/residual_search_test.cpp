@@ -46,7 +46,7 @@ TEST(SearchOrder, GoesOnAsSoonAsItCan) {
   EXPECT_EQ(frames, (std::vector<std::uint32_t>{0, 4, 2, 1, 3, 8, 6, 5, 7}));
 }
 
-TEST(ResidualBits, AreThoseOfTheModels) {
+TEST(ResidualBits, AreThoseOfTheRigs) {
   ResidualModels models;
   ResidualBits bits;
   bits.start(models);
