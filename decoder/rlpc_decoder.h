@@ -114,9 +114,9 @@ class Decoder {
   // Makes `frame` (below num_frames) the next one. GOFs in between are skipped, not decoded.
   Result<bool> seek(std::uint32_t frame);
   // Decodes a frame below num_frames, whatever came before; the one after it is then the next.
-  // Takes the time of one frame where its GOF is kept, or has been prefetched, and is not a GOF
-  // of frames, or keeps the frame; otherwise, that of parsing the GOF; in a GOF of frames that
-  // of decoding those it is predicted from as well. Always returns true, or an error.
+  // Takes the time of one frame where its GOF is kept, or has been prefetched, and is not an
+  // inter GOF, or keeps the frame; otherwise, that of parsing the GOF; in an inter GOF that of
+  // decoding those it is predicted from as well. Always returns true, or an error.
   Result<bool> frame(std::uint32_t frame, std::span<std::int32_t> positions);
   // Prepares the GOF of a frame below num_frames: with several threads in the background, with
   // one during the call, if it may be kept (max_cached_bytes). Only errors that prevent it from

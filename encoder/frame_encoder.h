@@ -10,7 +10,7 @@
 //
 // Without a number of frames (FrameFormat::num_frames), the stream is open-ended: frames are
 // added until finish(). With settings.low_delay, each frame is coded and passed to the sink at
-// once, in GOFs of frames; a frame that is refused is left out, and encoding can go on. Both
+// once, in inter GOFs; a frame that is refused is left out, and encoding can go on. Both
 // need the High profile. The rest of this comment is about frames that are held.
 //
 // GOFs have equal length, at most settings.gof_frames (by default 128, or 256 in the High

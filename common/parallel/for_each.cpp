@@ -133,7 +133,7 @@ class ThreadPool::Impl : public Owned {
     --sleepers_;
   }
 
-  // GOFs of frames with learned weights are coded 1.5 times as fast on two cores, and decoded
+  // Inter GOFs with learned weights are coded 1.5 times as fast on two cores, and decoded
   // as much; 1.2 and 1.35 times without. Half and twice as many do about the same (cow,
   // knight).
   static constexpr int kYields = 200;

@@ -1,4 +1,4 @@
-// GOFs of frames with random contents, for tests of parser, writer and reconstruction.
+// Inter GOFs with random contents, for tests of parser, writer and reconstruction.
 #pragma once
 
 #include <algorithm>
@@ -55,7 +55,7 @@ FramePattern random_frame_pattern(const Below& below) {
   return pattern;
 }
 
-// Any legal settings of a GOF of frames. below(n): as above.
+// Any legal settings of an inter GOF. below(n): as above.
 template <class Below>
 InterGof random_frame_settings(const OrderedMesh& mesh, std::uint32_t num_frames,
                                const Below& below) {

@@ -46,7 +46,7 @@ class SplitSkinnedGof {
   RandomSkinnedGof whole;  // with all component groups, in one GOF
   std::uint32_t rig_idx = 0;
   std::shared_ptr<const SharedRig> rig;  // with its first component groups
-  SkinnedGof tracks;                          // with the motion, and the other groups
+  SkinnedGof tracks;                     // with the motion, and the other groups
 
  private:
   void make_rig(std::size_t of_rig) {
@@ -82,8 +82,8 @@ class SplitSkinnedGof {
       tracks.vertex_residual.push_back(gof.vertex_residual[group]);
     }
     if (with_slices <= of_rig + 1) drop_last_tracks(with_slices);
-    for (std::size_t l = 0;
-         l < std::min(rig->trajectories.size(), tracks.trajectories.size()); ++l) {
+    for (std::size_t l = 0; l < std::min(rig->trajectories.size(), tracks.trajectories.size());
+         ++l) {
       if (random() % 4 != 0) continue;
       Trajectory& t = tracks.trajectories[l];
       const int spatial_bits = t.spatial_bits;

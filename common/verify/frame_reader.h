@@ -25,7 +25,7 @@ class FrameReader {
 
   // Decodes the next frame into positions [num_vertices][3], in grid units and in the order in
   // which decoders output vertices. To be called only for frames whose GOF is in the buffer
-  // whole; in an open-ended stream, for frames of a GOF of frames whose units are. The first
+  // whole; in an open-ended stream, for frames of an inter GOF whose units are. The first
   // call decodes attributes and asset, too. Returns what is wrong with the stream.
   virtual std::optional<std::string> next_frame(std::span<std::int32_t> positions) = 0;
   // After the last frame, once the whole stream is in the buffer: checks its end. Returns what

@@ -44,16 +44,16 @@ def expected_groups(slices, components, first=1, total=0):
     return groups, total
 
 
-def expected_slices(gof, components, layers, models, temporal):
-    """The slices of a GOF or skinned model (rlpcinfo --json) that a cut keeps, counted without
+def expected_slices(gof, components, layers, rigs, temporal):
+    """The slices of a GOF or shared rig (rlpcinfo --json) that a cut keeps, counted without
     the tools."""
     if "slices" not in gof:
         return []
     sizes = gof["layer_group_size"]
-    if "model" in gof:
-        model = models[gof["model"]]
-        groups, total = expected_groups(model["slices"], components)
-        if len(groups) == model["num_component_groups"]:
+    if "rig" in gof:
+        rig = rigs[gof["rig"]]
+        groups, total = expected_groups(rig["slices"], components)
+        if len(groups) == rig["num_component_groups"]:
             groups |= expected_groups(gof["slices"], components, len(groups) + 1, total)[0]
     else:
         groups, _ = expected_groups(gof["slices"], components)
@@ -102,10 +102,10 @@ class Cutting(CutTest):
         report = self.extract(path, f"components={components},layers={layers},temporal={temporal}",
                               "--json").json()
         info = self.ok("rlpcinfo", path, "--json").json()
-        models = info.get("models", [])
-        entries = models + info["gofs"]
-        stay = [expected_slices(gof, components, layers, models, temporal) for gof in entries]
-        for gof, slices, entry in zip(report["models"] + report["gofs"], stay, entries,
+        rigs = info.get("rigs", [])
+        entries = rigs + info["gofs"]
+        stay = [expected_slices(gof, components, layers, rigs, temporal) for gof in entries]
+        for gof, slices, entry in zip(report["rigs"] + report["gofs"], stay, entries,
                                       strict=True):
             self.assertEqual(gof["after"]["num_slices"], len(slices))
             self.assertEqual(gof["before"]["num_slices"], len(entry.get("slices", [])))
@@ -136,8 +136,8 @@ class Cutting(CutTest):
                        components, "--max-layers", layers, "--max-temporal-layers", temporal,
                        "--json").json()
         loses = [len(slices) < len(entry.get("slices", [])) for slices, entry in zip(stay, entries)]
-        of_gofs = any(cut or ("model" in gof and loses[gof["model"]])  # not unused models
-                      for cut, gof in zip(loses[len(models):], info["gofs"], strict=True))
+        of_gofs = any(cut or ("rig" in gof and loses[gof["rig"]])  # not unused rigs
+                      for cut, gof in zip(loses[len(rigs):], info["gofs"], strict=True))
         self.assertEqual(done["cut"], of_gofs)
         kinds = [code for code, _ in before]
         hashed = kinds.count(GOF) == kinds.count(GOF_HASH)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""GOFs of frames, by the tools.
+"""Inter GOFs, by the tools.
 
     tools_frames_test.py --bin BUILD/bin [unittest arguments, such as Frames]
 """
@@ -32,7 +32,7 @@ class Frames(ToolsTest):
         stream, sizes = self.path("a.rlpc"), {}
         for how in (["--kg", 0.1], ["--lossless", 12], ["--kg", 0.1, "--low-delay"]):
             for rest in ("prediction", "order", "auto"):
-                self.encode(stream, "--profile", "high", "--gof-kind", "frames", "--gof", 20,
+                self.encode(stream, "--profile", "high", "--gof-kind", "inter", "--gof", 20,
                             "--rest", rest, *how)
                 self.ok("rlpcdec", stream, "--verify")
                 info = self.ok("rlpcinfo", stream, "--json").json()
@@ -43,7 +43,7 @@ class Frames(ToolsTest):
     def test_frames_share_units(self):
         stream = self.path("a.rlpc")
         for number, units in ((1, 20), (6, 5), (100, 2)):  # the first frame has its own
-            self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "frames", "--gof", 20,
+            self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "inter", "--gof", 20,
                         "--frames-per-unit", number)
             self.ok("rlpcdec", stream, "--verify")
             gofs = self.ok("rlpcinfo", stream, "--json").json()["gofs"]
@@ -51,7 +51,7 @@ class Frames(ToolsTest):
 
     def test_vertices_that_follow_motions_are_counted(self):
         stream = self.path("a.rlpc")
-        self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "frames", "--gof", 20,
+        self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "inter", "--gof", 20,
                     "--frame-weights", "plain", "--partition", "kway", "--patches", 6,
                     name="robot_arm")
         self.ok("rlpcdec", stream, "--verify")
@@ -87,7 +87,7 @@ class Frames(ToolsTest):
         for options, words in (
                 (("--profile", "high", "--partition", "seeds"), "patches are not made from seeds"),
                 (("--profile", "main", "--partition", "kway"), "--partition needs --profile baseline"),
-                (("--profile", "main", "--patches", 3), "need --profile high and --gof-kind frames"),
+                (("--profile", "main", "--patches", 3), "need --profile high and --gof-kind inter"),
                 (("--profile", "high", "--patches", 2000), "2000 not in range")):
             self.fails(64, words, "rlpcenc", mesh, "-o", stream, *options)
             self.assertFalse(stream.exists())
@@ -96,7 +96,7 @@ class Frames(ToolsTest):
         sizes = {}
         for weights in ("learned", "geometry", "plain"):
             stream = self.path(weights + ".rlpc")
-            self.encode(stream, "--kg", 0.1, "--profile", "high", "--gof-kind", "frames",
+            self.encode(stream, "--kg", 0.1, "--profile", "high", "--gof-kind", "inter",
                         "--frame-weights", weights)
             sizes[weights] = stream.stat().st_size
         self.assertLess(sizes["learned"], 0.6 * sizes["geometry"])
@@ -106,7 +106,7 @@ class Frames(ToolsTest):
         streams = []
         for threads in (1, 3):
             stream = self.path(f"{threads}.rlpc")
-            self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "frames",
+            self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "inter",
                         "--threads", threads, preset="medium")
             streams.append(stream.read_bytes())
         self.assertEqual(*streams)
@@ -114,12 +114,12 @@ class Frames(ToolsTest):
     def test_the_choices_in_words(self):
         said = self.ok("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2", "-o",
                        self.path("a.rlpc"), "-v", "--kg", 0.5, "--gof", 20, "--profile", "high",
-                       "--gof-kind", "frames")
-        self.assertIn("3 GOFs of frames, ", said.out.decode())
+                       "--gof-kind", "inter")
+        self.assertIn("3 inter GOFs, ", said.out.decode())
         self.assertRegex(said.out.decode(), "[1-3] GOFs? of frames with pattern [a-z]")
 
     def test_the_pattern_is_chosen(self):
-        options = ("--kg", 0.3, "--profile", "high", "--gof-kind", "frames")
+        options = ("--kg", 0.3, "--profile", "high", "--gof-kind", "inter")
         sizes = {}
         for pattern in ("auto", "previous", "first", "dyadic:16"):
             stream = self.path(pattern + ".rlpc")
@@ -136,7 +136,7 @@ class Frames(ToolsTest):
     def test_the_pattern_has_the_temporal_layers(self):
         stream = self.path("a.rlpc")
         for layers in (2, 5, 7):
-            report = self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "frames",
+            report = self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "inter",
                                  "--temporal-layers", layers)
             self.assertEqual(len(report["temporal_cuts"]), layers - 1)
             gof = self.ok("rlpcinfo", stream, "--json").json()["gofs"][0]
@@ -146,11 +146,11 @@ class Frames(ToolsTest):
                                (("--temporal-layers", 2, "--frame-pattern", "previous"),
                                 "this pattern has 1 to 1 temporal layers")):
             self.fails(64, words, "rlpcenc", mesh, "-o", stream, "--profile", "high",
-                       "--gof-kind", "frames", *options)
+                       "--gof-kind", "inter", *options)
 
     def test_rlpcinfo_lists_frame_units(self):
         stream = self.path("a.rlpc")
-        self.encode(stream, "--kg", 0.5, "--gof", 20, "--profile", "high", "--gof-kind", "frames")
+        self.encode(stream, "--kg", 0.5, "--gof", 20, "--profile", "high", "--gof-kind", "inter")
         data, at, sizes = stream.read_bytes(), 10, []
         while at < len(data):
             size = 9 + int.from_bytes(data[at + 1:at + 5], "big")
@@ -162,7 +162,7 @@ class Frames(ToolsTest):
         self.assertEqual(sum(info["bits"].values()), 8 * info["bytes"])
         self.assertGreater(info["bits"]["frames"], 0.5 * 8 * info["bytes"])
         said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
-        for words in ("frame GOFs: 3, with ", "2 frame units each", "frame units in bytes"):
+        for words in ("inter GOFs: 3, with ", "2 frame units each", "frame units in bytes"):
             self.assertIn(words, said)
         page = self.path("a.html")
         self.ok("rlpcinfo", stream, "--html", page)
@@ -201,20 +201,20 @@ class Frames(ToolsTest):
                                (("--lossless", 1), "from 2 to 24"),
                                (("--lossless", 14, "--kg", 1), "excludes"),
                                (("--lossless", 14), "needs --profile high"),
-                               (("--lossless", 14, "--profile", "high", "--gof-kind", "bones"),
-                                "only GOFs of frames are lossless"),
+                               (("--lossless", 14, "--profile", "high", "--gof-kind", "skinned"),
+                                "only inter GOFs are lossless"),
                                (("--lossless", 14, "--profile", "high", "--components", 3),
                                 "no effect")):
             self.fails(64, words, "rlpcenc", mesh, *options, "-o", out)
 
     def test_settings_that_contradict(self):
         for options, words in (
-                (("--gof-kind", "frames"), "need --profile high"),
-                (("--profile", "baseline", "--gof-kind", "bones"), "has no bones"),
-                (("--profile", "high", "--gof-kind", "frames", "--bones", 3), "no effect"),
-                (("--profile", "high", "--gof-kind", "bones", "--frame-weights", "geometry"),
-                 "need --profile high and --gof-kind frames"),
-                (("--frame-weights", "plain"), "need --profile high and --gof-kind frames")):
+                (("--gof-kind", "inter"), "need --profile high"),
+                (("--profile", "baseline", "--gof-kind", "skinned"), "has no bones"),
+                (("--profile", "high", "--gof-kind", "inter", "--bones", 3), "no effect"),
+                (("--profile", "high", "--gof-kind", "skinned", "--frame-weights", "geometry"),
+                 "need --profile high and --gof-kind inter"),
+                (("--frame-weights", "plain"), "need --profile high and --gof-kind inter")):
             self.fails(64, words, "rlpcenc", INPUTS / "elephant.obj", *options, "-o",
                        self.path("a.rlpc"))
 

@@ -190,7 +190,7 @@ class WorstCases(MeasuredTest):
     """Streams at the limits of level 1, with fewer frames and components than make_worst_case
     usually gives them."""
 
-    KINDS = ("clusters", "bones", "tracks", "frames")
+    KINDS = ("cluster", "skinned", "shared-rig", "inter")
     GOF = 4  # unit_type
     NEEDED = re.compile(r"needs at least (\d+) (KiB|MiB) of memory")
 
@@ -231,19 +231,19 @@ class WorstCases(MeasuredTest):
         self.assertIn(rule, run("rlpcval", stream).out.decode())
 
     def test_one_more_than_the_level_allows(self):
-        for kind, what, rule in (("clusters", "vertices", "R-LVL-01"),
-                                 ("clusters", "frames", "R-LVL-04"),
-                                 ("bones", "values", "R-LVL-04"),
-                                 ("clusters", "factors", "R-LVL-05"),
-                                 ("clusters", "clusters", "R-LVL-06"),
-                                 ("bones", "clusters", "R-LVL-06"),
-                                 ("tracks", "clusters", "R-LVL-06"),
-                                 ("tracks", "adaptive", "R-LVL-09")):
+        for kind, what, rule in (("cluster", "vertices", "R-LVL-01"),
+                                 ("cluster", "frames", "R-LVL-04"),
+                                 ("skinned", "values", "R-LVL-04"),
+                                 ("cluster", "factors", "R-LVL-05"),
+                                 ("cluster", "clusters", "R-LVL-06"),
+                                 ("skinned", "clusters", "R-LVL-06"),
+                                 ("shared-rig", "clusters", "R-LVL-06"),
+                                 ("shared-rig", "adaptive", "R-LVL-09")):
             with self.subTest(kind=kind, what=what):
                 self.refused(rule, self.make(kind, "--frames", 16, "--beyond", what))
 
     def test_a_unit_larger_than_the_level_allows(self):
-        stream = self.make("clusters", "--frames", 1, "--components", 1)
+        stream = self.make("cluster", "--frames", 1, "--components", 1)
         data = bytearray(stream.read_bytes())
         at = 10
         while data[at] != self.GOF:

@@ -232,7 +232,7 @@ class Live(ToolsTest):
     def test_settings_that_contradict(self):
         for options, words in ((("--bpvf", 3), "a rate cannot be searched for"),
                                (("--frame-pattern", "dyadic:4"), "coded in their order"),
-                               (("--gof-kind", "bones"), "needs GOFs of frames"),
+                               (("--gof-kind", "skinned"), "needs inter GOFs"),
                                (("--lossless",), "needs a number of bits"),
                                (("--dry-run",), "excludes")):
             code = 1 if options == ("--lossless",) else 64

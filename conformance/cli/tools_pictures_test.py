@@ -137,7 +137,7 @@ class Pictures(CutTest):
     def test_encoded_patches(self):
         self.clip(4)
         self.ok("rlpcenc", self.path("clip.obj"), "--points", self.path("clip.pc2"), "-o",
-                self.path("a.rlpc"), "--profile", "high", "--gof-kind", "frames", "--partition",
+                self.path("a.rlpc"), "--profile", "high", "--gof-kind", "inter", "--partition",
                 "kway", "--patches", 12, "-q")
         self.assertEqual(self.check(self.path("a.rlpc")), {"patches", "layers"})
 
@@ -166,10 +166,10 @@ class Pictures(CutTest):
     def test_a_page_has_them(self):
         self.encode(self.path("a.rlpc"), "--gof", 20)
         first = self.ok("rlpcinfo", self.path("a.rlpc"), "--html", "-").out.decode()
-        self.assertIn("Frame 0, in the GOF of frames 0 to 19", first)
+        self.assertIn("Frame 0, in the inter GOF 0 to 19", first)
         later = self.ok("rlpcinfo", self.path("a.rlpc"), "--html", "-", "--frame", 45,
                         "--coarse").out.decode()
-        self.assertIn("Frame 45, in the GOF of frames 40 to 59", later)
+        self.assertIn("Frame 45, in the inter GOF 40 to 59", later)
         self.assertIn("frame 45.", later)
         self.ok("rlpcinfo", self.path("a.rlpc"), "--pictures", self.path("p"), "--frame", 45)
         for page, same in ((later, True), (first, False)):

@@ -1,4 +1,4 @@
-"""Random legal streams of the High profile: skinned models and GOFs that use them, too."""
+"""Random legal streams of the High profile: shared rigs and GOFs that use them, too."""
 
 import random_attributes
 import random_main
@@ -11,13 +11,13 @@ class HighPlan(random_main.MainPlan):
     def __init__(self, numbers):
         super().__init__(numbers)
         n = numbers
-        self.models_percent = n.pick([0, 30, 60])  # skinned models before a GOF
-        if self.models_percent:
+        self.rigs_percent = n.pick([0, 30, 60])  # shared rigs before a GOF
+        if self.rigs_percent:
             self.gof_frames = n.pick([1, 3])
-        self.tracks_percent = n.pick([50, 100])  # of the GOFs that can use a skinned model
+        self.tracks_percent = n.pick([50, 100])  # of the GOFs that can use a shared rig
         self.present_percent = n.pick([100, 70, 0])  # trajectories that occur in a GOF
         self.local_groups = n.pick([0, 0, 1, n.between(0, 3)])
-        self.frames_percent = n.pick([0, 0, 30, 100])  # share of GOFs of frames
+        self.frames_percent = n.pick([0, 0, 30, 100])  # share of inter GOFs
         self.open_end = n.chance(30)
         self.attributes = random_attributes.AttributePlan(n)
 
@@ -88,8 +88,8 @@ class HighSource(random_attributes.AttributeSource, random_main.MainSource):
             return 2
         return self._bones_flag(ns, indices, arguments)
 
-    def _model_idx(self, ns, indices, arguments):
-        if self.unit_code == ns["MODEL"]:
+    def _rig_idx(self, ns, indices, arguments):
+        if self.unit_code == ns["RIG"]:
             return self.numbers.pick([0, 0, 1, self.numbers.between(0, 7)])
         return self.numbers.pick(_kept(ns))
 
@@ -219,8 +219,8 @@ def _offset(ns):
 
 
 def _kept(ns):
-    """The indices of the skinned models that there are."""
-    return [m for m, model in enumerate(ns["Models"]) if model]
+    """The indices of the shared rigs that there are."""
+    return [m for m, rig in enumerate(ns["SharedRigs"]) if rig]
 
 
 class HighSequence(random_main.MainSequence):
@@ -234,7 +234,7 @@ class HighSequence(random_main.MainSequence):
             self._unit("CLIP_TABLE")
         ns = self._writer.ns
         if (self._plan.attributes.percent and ns["HasAttributes"] == 0 and "Triangles" in ns
-                and not self._writer.gof_frames and not self._writer.model_indices
+                and not self._writer.gof_frames and not self._writer.rig_indices
                 and self._n.chance(self._plan.attributes.percent)):
             self._unit("ATTRIBUTES")
 
@@ -242,9 +242,9 @@ class HighSequence(random_main.MainSequence):
         # R-IDX-05; where the end is open, the GOF that follows has a frame at least.
         ns = self._writer.ns
         most = ns["NumParsedFrames"] + 1 if self._plan.open_end else ns["NumFrames"]
-        while (self._n.chance(self._plan.models_percent)
-               and len(self._writer.model_indices) < most):
-            self._unit("MODEL")
+        while (self._n.chance(self._plan.rigs_percent)
+               and len(self._writer.rig_indices) < most):
+            self._unit("RIG")
             self._slices()
             self._skippable()
         super()._gof()

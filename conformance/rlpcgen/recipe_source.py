@@ -401,10 +401,10 @@ def _infer_positions(writer, codes, offsets, code):
         writer.inferred["first_gof_offset"] = gofs[0] if gofs else 0
         writer.inferred["index_gof_bytes"] = [b - a for a, b in zip(gofs, gofs[1:] + [here])]
         writer.inferred["index_gof_frames_minus1"] = list(writer.gof_frames)
-        models = [at for c, at in offsets if c == codes["MODEL"]]
-        writer.inferred["num_index_rigs"] = len(models)
-        writer.inferred["index_rig_idx"] = list(writer.model_indices)
-        writer.inferred["index_rig_distance"] = [b - a for a, b in zip([0] + models, models)]
+        rigs = [at for c, at in offsets if c == codes["RIG"]]
+        writer.inferred["num_index_rigs"] = len(rigs)
+        writer.inferred["index_rig_idx"] = list(writer.rig_indices)
+        writer.inferred["index_rig_distance"] = [b - a for a, b in zip([0] + rigs, rigs)]
     elif code == codes["END_OF_SEQUENCE"]:
         indexed = offsets and offsets[-1][0] == codes["GOF_INDEX"]
         writer.inferred["index_distance"] = here - offsets[-1][1] if indexed else 0

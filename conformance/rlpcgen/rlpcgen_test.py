@@ -437,7 +437,7 @@ class Decompiling(unittest.TestCase):
             for data in small:
                 self.assertNotRegex(
                     self.back(data),
-                    "unit (GOF|MODEL|SLICE)\n(  section_end = highest\n)?  payload")
+                    "unit (GOF|RIG|SLICE)\n(  section_end = highest\n)?  payload")
 
     def test_elements_not_bytes(self):
         text = self.back(build(TETRAHEDRON))

@@ -159,15 +159,15 @@ class StreamWriter:
         self.ns["StartRigs"]()
         self.inferred = {}  # element -> value, or list of values, that fits what is written
         self.gof_frames = []  # num_gof_frames_minus1 of each GOF
-        self.model_indices = []  # rig_idx of each skinned model
-        self._model_pending = False  # a skinned model that is not decoded yet
+        self.rig_indices = []  # rig_idx of each shared rig
+        self._rig_pending = False  # a shared rig that is not decoded yet
         self.frame_hashes = []
         self.running_hash = 0
         self._num_crcs = 0  # hashes of frames in the unit
         self._crcs = []  # those that are known once it has been written: (number, place)
         self._first_frame_crcs = []  # those that the whole stream gives: (bit position, unit)
         self._unit_start = 0
-        self._decoded_frames = 0  # of a GOF of frames
+        self._decoded_frames = 0  # of an inter GOF
         self._counts_gof = False  # the last GOF is in gof_frames
 
     # Bits.
@@ -328,8 +328,8 @@ class StreamWriter:
         requirement may be one that cannot be written to its end; it ends there.
         """
         ns = self.ns
-        if code in (ns["GOF"], ns["MODEL"]):
-            self._finish_model()
+        if code in (ns["GOF"], ns["RIG"]):
+            self._finish_rig()
         if code == ns["GOF_INDEX"] and ns.get("open_end_flag"):
             ns["NumFrames"] = ns["NumParsedFrames"]  # as random access knows it
         self.source.unit_code = code
@@ -354,8 +354,8 @@ class StreamWriter:
             del self.data[start + 5:]
             self.put_bytes(changed)
         self._close_unit(start)
-        if code == ns["MODEL"] and self._can_run(code):
-            self._start_model()
+        if code == ns["RIG"] and self._can_run(code):
+            self._start_rig()
 
     def _run_payload(self, code):
         if not self._can_run(code):
@@ -403,10 +403,10 @@ class StreamWriter:
         if code < 128 and not self.ns["IsKnownType"](code):
             return False  # such as a slice in 1.0
         if code == self.ns["SLICE"]:
-            return "SliceLayers" in self.ns  # after a GOF or skinned model
+            return "SliceLayers" in self.ns  # after a GOF or shared rig
         if code == self.ns["FRAME"]:
-            return "FrameGroups" in self.ns  # after a GOF of frames
-        if code == self.ns["MODEL"]:
+            return "FrameGroups" in self.ns  # after an inter GOF
+        if code == self.ns["RIG"]:
             return "EarlierNeighbours" in self.ns  # after the connectivity
         return True
 
@@ -466,15 +466,15 @@ class StreamWriter:
         written = int.from_bytes(self.data[end:end + 4], "big")
         self.data[end:end + 4] = (written ^ change).to_bytes(4, "big")
 
-    def _start_model(self):
-        self.model_indices.append(self.ns["rig_idx"])
-        self._model_pending = True
+    def _start_rig(self):
+        self.rig_indices.append(self.ns["rig_idx"])
+        self._rig_pending = True
 
-    def _finish_model(self):
-        """Before the next GOF or skinned model: GOFs can use this one."""
-        if not self._model_pending:
+    def _finish_rig(self):
+        """Before the next GOF or shared rig: GOFs can use this one."""
+        if not self._rig_pending:
             return
-        self._model_pending = False
+        self._rig_pending = False
         try:
             self.ns["DecodeRig"]()
         except (IndexError, KeyError, NameError, TypeError, ValueError):

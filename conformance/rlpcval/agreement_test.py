@@ -21,13 +21,13 @@ import specdec  # noqa: E402
 from specdec_testing import stream_of, units_of  # noqa: E402
 
 SLICE = 6
-MODEL = 7
+RIG = 7
 
 
 def damaged(stream, numbers):
     """The stream with one fault, of a kind drawn from `numbers`."""
     units = units_of(stream)
-    slices = [u for u, (code, _) in enumerate(units) if code in (SLICE, MODEL)]
+    slices = [u for u, (code, _) in enumerate(units) if code in (SLICE, RIG)]
     kind = numbers.choice(["flip", "flip", "flip", "payload", "cut", "short", "drop", "drop",
                            "swap", "move"])
     if kind == "cut":

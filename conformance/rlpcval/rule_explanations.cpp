@@ -147,7 +147,7 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "stream; or a unit was inserted after it was computed.",
      "Write the size of the whole GOF index unit (payload + 9), or 0 if there is none, and the "
      "index directly before the end."},
-    {"R-FRM-01", "7.14", "The step of a GOF of frames is above 2^12 grid units.",
+    {"R-FRM-01", "7.14", "The step of an inter GOF is above 2^12 grid units.",
      "The step was written in other units than 1/16 grid units.",
      "Write the step in 1/16 grid units, minus 1."},
     {"R-FRM-02", "7.14.2", "A frame unit has a frame or a layer group that its GOF lacks.",
@@ -170,7 +170,7 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
     {"R-FRM-05", "7.14.1", "The period of a dyadic pattern is not 2, 4, 8, 16, 32 or 64.",
      "pattern_period_log2 was written as the period itself, or is 0.",
      "Write a logarithm of 1 to 6; with a period of one frame, frame_pattern_idc is 0."},
-    {"R-FRM-06", "7.14.1", "The pattern of a GOF of frames is not one.",
+    {"R-FRM-06", "7.14.1", "The pattern of an inter GOF is not one.",
      "A frame of the period is missing or comes twice, a reference comes after the frame that "
      "it "
      "predicts, or depths are too small.",
@@ -459,7 +459,8 @@ constexpr std::array kWarnings = std::to_array<RuleExplanation>({
      "Write a shared rig only if a GOF uses it."},
     {"W-SLI-01", "7.12.1", "A trajectory is zero in all frames.",
      "All its residuals became zero by quantisation.",
-     "Omit trajectories that quantise to zero; in a GOF of tracks, write trajectory_flag 0."},
+     "Omit trajectories that quantise to zero; in a skinned GOF with a shared rig, write "
+     "trajectory_flag 0."},
     {"W-UNT-01", "7.2", "An ancillary unit of a type that this version does not know.",
      "A private unit, a unit of a later version, or a damaged type.",
      "Decoders skip it; make sure that nothing depends on it."},

@@ -68,9 +68,8 @@ struct ValidationReport {
   std::uint32_t gofs = 0;    // whose sections were read to the end
   std::uint32_t frames = 0;  // of these GOFs
   std::uint32_t attribute_sets = 0;
-  std::uint32_t hashed_frames = 0;  // whose positions match their hash
-  std::uint32_t gofs_of_hashed_frames =
-      0;  // GOFs of frames, each of which has a hash of its own
+  std::uint32_t hashed_frames = 0;          // whose positions match their hash
+  std::uint32_t gofs_of_hashed_frames = 0;  // inter GOFs, each of which has a hash of its own
 
   std::size_t count(Severity severity) const;
   // The finding that a decoder reports; null if it decodes the stream.

@@ -1,4 +1,4 @@
-// GOFs of frames and the beginning of their frame units (6.14), as the validator reads them.
+// Inter GOFs and the beginning of their frame units (6.14), as the validator reads them.
 #pragma once
 
 #include <cstdint>

@@ -27,11 +27,7 @@ class GofWarnings {
  public:
   GofWarnings(const StreamContext& context, const RigSlots& rigs, std::uint64_t bit_pos,
               FindingList& findings, Level& needed)
-      : context_(context),
-        rigs_(rigs),
-        at_(bit_pos),
-        findings_(findings),
-        needed_(needed) {}
+      : context_(context), rigs_(rigs), at_(bit_pos), findings_(findings), needed_(needed) {}
 
   void add(const ClusterGof& gof);
   void add(const SkinnedGof& gof);
@@ -92,7 +88,7 @@ void GofWarnings::add(const ClusterGof& gof) {
   }
 }
 
-// What has vertices in a GOF of bones or shared rig.
+// What has vertices in a skinned GOF or shared rig.
 void GofWarnings::add_rig(const SharedRig& rig) {
   std::vector<bool> in_use(rig.bones.size(), false);
   const OrderedMesh& mesh = (*context_.meshes)[rig.prediction];
@@ -159,9 +155,8 @@ void warn_of_gof(const AccessUnit& access_unit, const StreamContext& context,
   std::visit([&](const auto& gof) { warnings.add(gof); }, access_unit.gof);
 }
 
-void warn_of_rig(const SharedRig& rig, const StreamContext& context,
-                   const RigSlots& rigs, std::uint64_t bit_pos, FindingList& findings,
-                   Level& needed) {
+void warn_of_rig(const SharedRig& rig, const StreamContext& context, const RigSlots& rigs,
+                 std::uint64_t bit_pos, FindingList& findings, Level& needed) {
   GofWarnings(context, rigs, bit_pos, findings, needed).add(rig);
 }
 

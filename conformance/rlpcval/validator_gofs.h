@@ -20,8 +20,7 @@ void warn_of_gof(const AccessUnit& access_unit, const StreamContext& context,
                  const RigSlots& rigs, std::uint64_t bit_pos, FindingList& findings,
                  Level& needed);
 // rigs: those alive, with this one.
-void warn_of_rig(const SharedRig& rig, const StreamContext& context,
-                   const RigSlots& rigs, std::uint64_t bit_pos, FindingList& findings,
-                   Level& needed);
+void warn_of_rig(const SharedRig& rig, const StreamContext& context, const RigSlots& rigs,
+                 std::uint64_t bit_pos, FindingList& findings, Level& needed);
 
 }  // namespace rlpc

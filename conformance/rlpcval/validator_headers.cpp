@@ -207,9 +207,8 @@ bool check_levels(ElementReader& r, std::uint32_t& temporal_layers) {
 bool check_tracks(ElementReader& r, const SeenRigs& rigs, GofHeaderCheck& gof) {
   const auto rig_idx = static_cast<std::size_t>(r.u(3, "rig_idx"));
   const SeenRig& kept = rigs[rig_idx];
-  if (!r.supported(
-          kept.rig || kept.lost, "R-MOD-01",
-          "the stream has no shared rig " + std::to_string(rig_idx) + " up to here")) {
+  if (!r.supported(kept.rig || kept.lost, "R-MOD-01",
+                   "the stream has no shared rig " + std::to_string(rig_idx) + " up to here")) {
     return false;
   }
   std::uint32_t temporal_layers = 1;
@@ -218,9 +217,9 @@ bool check_tracks(ElementReader& r, const SeenRigs& rigs, GofHeaderCheck& gof) {
   if (!kept.rig || !r.readable()) return false;
   gof.rig_suspect = kept.suspect;
   const std::uint32_t of_rig = kept.rig->num_component_groups;
-  const bool good = r.require(groups <= kMaxComponentGroups - of_rig, "R-BON-02",
-                              "the shared rig has " + std::to_string(of_rig) + " of " +
-                                  at_most(kMaxComponentGroups));
+  const bool good = r.require(
+      groups <= kMaxComponentGroups - of_rig, "R-BON-02",
+      "the shared rig has " + std::to_string(of_rig) + " of " + at_most(kMaxComponentGroups));
   if (good) {
     gof.slices = SliceCounts{of_rig + static_cast<std::uint32_t>(groups),
                              static_cast<std::uint32_t>(kept.rig->layer_group_size.size()),
@@ -277,7 +276,7 @@ GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
 
 // 6.13 rig( )
 RigHeaderCheck check_rig_header(ElementReader& r, const SequenceHeader& header,
-                                    std::uint32_t num_layers) {
+                                std::uint32_t num_layers) {
   RigHeaderCheck rig;
   const std::int64_t rig_idx = r.u(3, "rig_idx");
   if (!r.readable()) return rig;
@@ -312,7 +311,7 @@ namespace {
 
 // 6.9 index_of_rigs( ). False if the index is not readable to its end.
 bool check_index_of_rigs(ElementReader& r, std::uint32_t num_frames,
-                           std::uint64_t max_memory_bytes, GofIndexCheck& index) {
+                         std::uint64_t max_memory_bytes, GofIndexCheck& index) {
   const std::int64_t num_rigs = r.ue("num_index_rigs");
   bool good = r.require(num_rigs <= num_frames, "R-IDX-05",
                         "the sequence has " + std::to_string(num_frames) + " frames");

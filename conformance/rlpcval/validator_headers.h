@@ -30,7 +30,7 @@ struct SliceCounts {
   std::uint32_t component_groups = 0;  // and the influences, which are not factors
   std::uint32_t layer_groups = 1;
   std::uint32_t temporal_layers = 1;
-  std::uint32_t frames = 0;  // of a GOF of frames; 0: there are slice units
+  std::uint32_t frames = 0;  // of an inter GOF; 0: there are slice units
   bool open_end = false;     // of the stream
 };
 
@@ -40,7 +40,7 @@ struct GofHeaderCheck {
   std::optional<GofKind> kind;        // if it could be read, or inferred
   bool section_readable = false;      // only first_frame may be wrong
   std::optional<SliceCounts> slices;  // of the units that follow, if known
-  bool rig_suspect = false;         // its shared rig may be wrong
+  bool rig_suspect = false;           // its shared rig may be wrong
 };
 
 // 6.5 gof( ), up to its section. expected_first_frame: nothing if it is not known. num_layers:
@@ -57,7 +57,7 @@ struct RigHeaderCheck {
 
 // 6.13 rig( ), up to its section. num_layers: as above.
 RigHeaderCheck check_rig_header(ElementReader& r, const SequenceHeader& header,
-                                    std::uint32_t num_layers);
+                                std::uint32_t num_layers);
 
 // 6.12 slice_unit( ) or 6.14.1 frame_unit( ), its indices. True if they are legal.
 bool check_slice_header(ElementReader& r, const SliceCounts& slices);

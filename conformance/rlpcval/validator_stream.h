@@ -20,8 +20,8 @@
 #include "decoder/codec/gofs/rig_recons.h"
 #include "decoder/codec/parse/access_unit_parser.h"
 #include "decoder/codec/parse/memory_limit.h"
-#include "decoder/codec/parse/rig_parser.h"
 #include "decoder/codec/parse/parse_gof_hash.h"
+#include "decoder/codec/parse/rig_parser.h"
 
 namespace rlpc {
 
@@ -152,7 +152,7 @@ class StreamValidator {
     std::optional<std::uint32_t> expected_first_frame;  // nothing if it is not known
     std::uint32_t num_frames = 0;                       // 0: not known
     bool may_have_slices = false;                       // it is a skinned GOF, or unknown
-    bool may_have_frames = false;                       // it is a GOF of frames, or unknown
+    bool may_have_frames = false;                       // it is an inter GOF, or unknown
     std::optional<AccessUnit> access_unit;              // if all units could be read
     bool frames_due = false;                            // they are yet to be decoded
   };
@@ -161,7 +161,7 @@ class StreamValidator {
   // The shared rig whose units were read last, and those that are kept.
   struct CurrentRig : Current<RigParser> {
     std::optional<std::uint32_t> rig_idx;  // if it could be read
-    std::uint64_t bit_pos = 0;               // of its payload
+    std::uint64_t bit_pos = 0;             // of its payload
   };
   CurrentRig rig_;
   SeenRigs rigs_;

@@ -236,7 +236,7 @@ TEST(ThreadsOfACut, LeaveAttributesWhole) {
 
 std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
   constexpr std::array<const char*, 8> kNames{
-      "Baseline", "BaselineFrameHashes", "Main",   "MainFrameHashes",
+      "Baseline", "BaselineFrameHashes", "Main", "MainFrameHashes",
       "Mixed",    "EncodedModels",       "Rigs", "IndexedRigs"};
   return kNames.at(stream.index);
 }

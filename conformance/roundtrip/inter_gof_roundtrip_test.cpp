@@ -1,4 +1,4 @@
-// GOFs of frames (6.14, 8.19): writer and parser against each other, the encoder against the
+// Inter GOFs (6.14, 8.19): writer and parser against each other, the encoder against the
 // reconstruction of the decoder, and frames in any order and on any number of threads.
 #include <gtest/gtest.h>
 

@@ -310,8 +310,8 @@ std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream)
   return std::array{"Main", "Rigs", "Chained", "Dyadic", "Independent"}[stream.index];
 }
 INSTANTIATE_TEST_SUITE_P(Streams, RandomAccess,
-                         testing::Values(main_stream, rig_stream, chained_stream,
-                                         dyadic_stream, independent_stream),
+                         testing::Values(main_stream, rig_stream, chained_stream, dyadic_stream,
+                                         independent_stream),
                          stream_name);
 INSTANTIATE_TEST_SUITE_P(Streams, AttributesOfStreams,
                          testing::Values(main_stream, chained_stream, dyadic_stream,

@@ -318,13 +318,13 @@ class RandomAccess(Access):
             self.assertTrue(all(frames))
             self.assertTrue(whole.getvalue().endswith(b"".join(frames)), path)
 
-    def test_which_skinned_models_are_decoded(self):
+    def test_which_shared_rigs_are_decoded(self):
         self.open(HIGH / "MDL" / "MDL-0012a.rlpc")
         v = self.decoder()
         v.update(self.index)
         offsets, found = self.index["RigIndexOffset"], []
-        model = v["model"]
-        v["model"] = lambda: (found.append(v["UnitStart"]), model())
+        rig = v["rig"]
+        v["rig"] = lambda: (found.append(v["UnitStart"]), rig())
         for gof in self.gofs:
             found.clear()
             end = self.index["IndexOffset"][gof]
@@ -334,7 +334,7 @@ class RandomAccess(Access):
             self.assertEqual([m for m, kept in enumerate(v["Models"]) if kept], sorted(latest))
         self.assertGreater(len(offsets), len(found))  # one is replaced
 
-    def test_wrong_lists_of_skinned_models(self):
+    def test_wrong_lists_of_shared_rigs(self):
         for number, rule in ((1, "R-MOD-01"), (2, "R-IDX-05"), (3, "R-IDX-06"), (4, "R-UNT-05"),
                              (5, "R-IDX-02")):
             path = HIGH.parent / "either" / "MDL" / f"MDL-0012x{number}.rlpc"
@@ -407,7 +407,7 @@ class Aborted(Access):
 
 
 class AbortedTracks(Aborted):
-    """The same with skinned models."""
+    """The same with shared rigs."""
 
     STREAM = HIGH / "MDL" / "MDL-0012a.rlpc"
     FUNCTIONS = (*Aborted.FUNCTIONS, "StartVertices", "LoadRig", "StartTracks")

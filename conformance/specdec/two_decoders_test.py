@@ -157,11 +157,11 @@ class MainStreams(StreamTest):
 
 
 class HighStreams(StreamTest):
-    """The same for the High profile, with several GOFs of one skinned model."""
+    """The same for the High profile, with several GOFs of one shared rig."""
 
     def encode_high(self, name, frames, *settings):
         data = self.encode(cut_animation(self.folder, name, frames), *settings, profile="high")
-        self.assertIn(MODEL, [kind for kind, _ in units_of(data)])
+        self.assertIn(RIG, [kind for kind, _ in units_of(data)])
         return data
 
     def test_several_gofs(self):
@@ -196,7 +196,7 @@ class HighStreams(StreamTest):
              "NumTrajectories = GroupEnd[component_group_idx] - 4")))
 
 
-SLICE, MODEL = 6, 7
+SLICE, RIG = 6, 7
 
 
 class DamagedStreams(Clips):
@@ -262,7 +262,7 @@ class DamagedMixedStreams(DamagedStreams):
 
 
 class DamagedHighStreams(DamagedStreams):
-    """The same for streams with skinned models."""
+    """The same for streams with shared rigs."""
 
     def stream(self):
         return (ROOT / "streams/v1.2/accept/MDL/MDL-0005a.rlpc").read_bytes()

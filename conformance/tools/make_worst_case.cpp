@@ -19,7 +19,7 @@
 namespace rlpc::worst_case {
 namespace {
 
-constexpr std::array<const char*, 4> kKindNames{"clusters", "bones", "tracks", "frames"};
+constexpr std::array<const char*, 4> kKindNames{"cluster", "skinned", "shared-rig", "inter"};
 
 struct Request {
   std::uint32_t level = 0;

@@ -19,8 +19,8 @@
 
 namespace rlpc::worst_case {
 
-// A GOF of clusters (Baseline); a GOF of bones (Main); a GOF of tracks with its shared rig
-// (High); a GOF of frames (High).
+// A cluster GOF (Baseline); a skinned GOF (Main); a skinned GOF with a shared rig with its
+// shared rig (High); an inter GOF (High).
 enum class Kind : std::uint8_t { kClusters, kBones, kTracks, kFrames };
 
 struct Size {

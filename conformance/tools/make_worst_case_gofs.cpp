@@ -68,7 +68,7 @@ class InfluenceMaker {
 
 // num_frames: 0 of a shared rig.
 void fill_rig(SharedRig& rig, const Size& size, const OrderedMesh& mesh, Noise& noise,
-                std::uint32_t num_frames) {
+              std::uint32_t num_frames) {
   rig.fraction_bits = kMaxFractionBits;
   rig.weight_bits = kMaxWeightBits;
   rig.rest_step = 1;

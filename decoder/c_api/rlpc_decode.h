@@ -81,8 +81,8 @@ typedef struct rlpc_decode_options {
   // rlpc_stream_info, triangles and frames are its own. RLPC_ALL: the whole mesh. Layer groups
   // that it does not need are dropped.
   uint32_t coarse_layers;
-  // Memory for GOFs that have been left, and, within half of it, for decoded frames of GOFs of
-  // frames (High profile): going back to them takes no decoding. Estimated; part of
+  // Memory for GOFs that have been left, and, within half of it, for decoded frames of inter
+  // GOFs (High profile): going back to them takes no decoding. Estimated; part of
   // max_memory_bytes, and dropped where that is short. Default 64 MiB; 0: none.
   uint64_t max_cached_bytes;
   // Of all memory of this decoder, its handle included, unless that has a place. Both functions
@@ -232,8 +232,8 @@ RLPC_API rlpc_status rlpc_decoder_gofs(rlpc_decoder* decoder, rlpc_gof* gofs, si
 //
 // Time: per vertex, what the profile takes, in bands of four frames per thread where calls
 // follow each other in either direction. The first frame of a GOF that is neither kept
-// (max_cached_bytes) nor prefetched takes parsing and preparing that GOF as well. In a GOF of
-// frames (High profile), a frame that is not kept takes decoding all that it is predicted from:
+// (max_cached_bytes) nor prefetched takes parsing and preparing that GOF as well. In an inter
+// GOF (High profile), a frame that is not kept takes decoding all that it is predicted from:
 // going on, one or a few frames; elsewhere, up to the whole GOF. Memory: one frame, a further
 // one with normals, once; that of GOFs when one is entered.
 RLPC_API rlpc_status rlpc_decoder_frame(rlpc_decoder* decoder, uint32_t frame,

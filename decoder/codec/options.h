@@ -46,7 +46,7 @@ struct DecoderOptions {
   // them all.
   bool read_dropped_slices = true;
   // GOFs that have been left are kept within this much memory (estimated), and so are, within
-  // half of it, decoded frames of a GOF of frames. It counts towards max_memory_bytes; where
+  // half of it, decoded frames of an inter GOF. It counts towards max_memory_bytes; where
   // that is not enough, they are dropped. 0: nothing is kept.
   std::uint64_t max_cached_bytes = 0;
   // Ancillary units whose CRC or contents are wrong count as absent: damaged_units(). Otherwise

@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "common/codec/kinds/skinned/rig_slots.h"
 #include "common/codec/kinds/skinned/recon/rig_recon.h"
 #include "common/codec/kinds/skinned/recon/skinned_recon.h"
+#include "common/codec/kinds/skinned/rig_slots.h"
 #include "common/codec/syntax/stream_format.h"
 #include "common/testing/fuzz_input.h"
 #include "decoder/codec/parse/parse_gof_header.h"
@@ -107,8 +107,7 @@ class Units {
     const rlpc::OrderedMesh& mesh = meshes_[rig->prediction];
     check_influences(*rig, rlpc::complete_influences(mesh, *rig));
     rigs_.of_idx[idx] = rig;
-    recons_[idx] =
-        std::make_shared<rlpc::RigRecon>(mesh, *rig, header_.position_bits, true);
+    recons_[idx] = std::make_shared<rlpc::RigRecon>(mesh, *rig, header_.position_bits, true);
   }
   void finish_gof() {
     const rlpc::SkinnedGof gof = parser_.finish();

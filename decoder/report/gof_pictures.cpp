@@ -153,7 +153,7 @@ std::string title_of(const VertexGroups& groups) {
 std::string frames_text(const PicturedFrame& frame) {
   const VertexGroups& gof = frame.groups;
   if (gof.num_frames == 1) return "Frame " + std::to_string(frame.frame) + ", a GOF of its own";
-  return "Frame " + std::to_string(frame.frame) + ", in the GOF of frames " +
+  return "Frame " + std::to_string(frame.frame) + ", in the inter GOF " +
          std::to_string(gof.first_frame) + " to " +
          std::to_string(gof.first_frame + gof.num_frames - 1);
 }

@@ -56,7 +56,7 @@ TEST_F(GofPictures, ShowClustersAndLayersFromTwoSides) {
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0].name, "clusters");
   EXPECT_EQ(all[0].title, "2 clusters, 1 with a seed triangle, which is outlined");
-  EXPECT_EQ(all[0].notes[0], "Frame 25, in the GOF of frames 20 to 29.");
+  EXPECT_EQ(all[0].notes[0], "Frame 25, in the inter GOF 20 to 29.");
   EXPECT_EQ(all[0].notes.size(), 2U);
   EXPECT_EQ(count(all[0].body, "<g class=\"view\""), 2U);
   EXPECT_EQ(count(all[0].body, "class=\"seed\""), 4U);

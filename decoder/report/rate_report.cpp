@@ -243,7 +243,7 @@ void add_gof_section(HtmlPage& page, const StreamRates& rates) {
   page.add_section(
       "Groups of frames",
       std::string(has_rigs ? "Each GOF decodes without the others, with its shared rig. "
-                             : "GOFs decode independently. ") +
+                           : "GOFs decode independently. ") +
           "Those of bones can be cut to fewer components or "
           "layers, those of frames to fewer layers, without re-encoding (rlpcinfo --extract).",
       html);

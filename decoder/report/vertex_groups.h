@@ -13,7 +13,7 @@ namespace rlpc {
 enum class GroupKind : std::uint8_t { kNone, kClusters, kBones, kPatches };
 
 struct VertexGroups {
-  GroupKind kind = GroupKind::kNone;  // kNone: a GOF of frames without patches
+  GroupKind kind = GroupKind::kNone;  // kNone: an inter GOF without patches
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
   std::uint32_t num_groups = 0;

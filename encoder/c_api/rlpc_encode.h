@@ -116,7 +116,7 @@ typedef struct rlpc_encode_options {
   // those of one GOF; 0: as many as share a shared rig in memory, 2^23 positions or fewer.
   uint32_t max_held_frames;
   uint32_t gof_kind;  // default RLPC_KIND_AUTO
-  // High profile, 1: each frame is coded when it is added, in GOFs of frames; a KG error is
+  // High profile, 1: each frame is coded when it is added, in inter GOFs; a KG error is
   // then met approximately. Default 0. Targets: all but RLPC_TARGET_BPVF.
   uint32_t low_delay;
   // Named parts of the sequence, num_clips of them, up to RLPC_MAX_CLIPS; copied. Default none.

@@ -32,7 +32,7 @@ struct TemporalCut {
   double kg_error_percent = 0.0;
 };
 
-// GOFs of frames with the same pattern, and the same number of patches.
+// Inter GOFs with the same pattern, and the same number of patches.
 struct PatternCount {
   FramePattern pattern;
   std::uint32_t patches = 0;
@@ -55,7 +55,7 @@ struct EncodeReport {
   // The largest distance of a vertex of the input from the 32-bit floats that were coded, in
   // units: errors are measured from the numbers of the input, and include it.
   double largest_rounding = 0.0;
-  std::vector<PatternCount> patterns;       // of GOFs of frames, in order of appearance
+  std::vector<PatternCount> patterns;       // of inter GOFs, in order of appearance
   std::vector<AttributeReport> attributes;  // in the order of the stream
   std::vector<TemporalCut> temporal_cuts;   // to 1 layer and more; empty: there is only one
   std::vector<std::uint32_t> input_vertex;  // [decoded vertex], index in the input

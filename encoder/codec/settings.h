@@ -58,7 +58,7 @@ struct BaselineTools {
   MotionMeasure motion = MotionMeasure::kAuto;  // of kSeeds
 };
 
-// How rest positions, and first frames of GOFs of frames, may be coded: as the other values, in
+// How rest positions, and first frames of inter GOFs, may be coded: as the other values, in
 // an order of their own (8.18), or that with counterparts. Each includes those before it.
 enum class RestTools : std::uint8_t { kPrediction, kOrder, kCounterparts };
 
@@ -93,12 +93,12 @@ struct MainTools {
 // cheapest for each GOF.
 enum class KindChoice : std::uint8_t { kAuto, kClusters, kBones, kFrames };
 
-// Weights with which a vertex of a GOF of frames is predicted from others: learned from the
+// Weights with which a vertex of an inter GOF is predicted from others: learned from the
 // frames before; those of 8.11, from the first frame; or equal ones for its ring, as in
 // Stefanoski et al. 2007.
 enum class InterWeights : std::uint8_t { kLearned, kGeometry, kPlain };
 
-// Parameters of GOFs of frames, of the High profile.
+// Parameters of inter GOFs, of the High profile.
 struct InterTools {
   // From which frames each is predicted; none: the cheapest of several patterns, for each GOF.
   // FramePattern::temporal_layers is not used.

@@ -27,7 +27,7 @@ SETTINGS = ("--kg 1", "--kg 0.2", "--kg 0.05", "--kg 0.1 --gof all", "--kg 0.2 -
             "--profile baseline --kg 1", "--profile baseline --kg 0.1 --gof all",
             "--profile baseline --kg 0.2 --gof 30",
             "--profile high --kg 1", "--profile high --kg 0.1",
-            "--profile high --kg 0.3 --gof-kind frames --preset fast")
+            "--profile high --kg 0.3 --gof-kind inter --preset fast")
 MAX_RISE_PER_MILLE = 5
 MAX_MEAN_RISE = 0.002
 

@@ -33,7 +33,7 @@ MAIN = ("--profile main --kg 0.3",
         "--profile main --bpvf 1.5 --preset fast --gof 40 --bones 4")
 HIGH = ("--profile high --kg 0.3",
         "--profile high --kg 1 --preset fast --gof 20 --keep-order --hash frame",
-        "--profile high --kg 0.3 --gof-kind frames --preset fast",
+        "--profile high --kg 0.3 --gof-kind inter --preset fast",
         "--profile high --max-error 0.01 --low-delay --keep-order")
 
 

@@ -102,7 +102,7 @@ ROOMS = {
     "decoder/meshes/gltf": _MESH_FILES | {"common/codec/attributes", "common/parallel",
                                           "decoder/meshes", "decoder/surface"},
     "decoder/report": _GOFS | _PUBLIC_DECODER | {
-        "common/codec/kinds", "common/codec/kinds/skinned/recon/model_recon.h", "common/json",
+        "common/codec/kinds", "common/codec/kinds/skinned/recon/rig_recon.h", "common/json",
         "decoder/codec/units", "decoder/meshes"},
     "decoder/c_api": _PUBLIC_DECODER | {
         "common/c_api", "common/codec/mesh", "common/files/clip_time.h",

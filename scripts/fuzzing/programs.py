@@ -244,7 +244,7 @@ TARGETS = [["--kg", "0.01"], ["--kg", "0.1"], ["--kg", "3"], ["--bpvf", "0.5"], 
            ["--kg", "nan"], ["--bpvf", "0"], ["--max-error", "-1"]]
 MORE = [["--gof", "all"], ["--gof", "1"], ["--gof", "5"], ["--gof", "0"], ["--keep-order"],
         ["--hash", "frame"], ["--hash", "none"], ["--threads", "3"], ["--no-attributes"],
-        ["--no-textures"], ["--clusters", "3"], ["--gof-kind", "frames"], ["--gof-kind", "bones"],
+        ["--no-textures"], ["--clusters", "3"], ["--gof-kind", "inter"], ["--gof-kind", "skinned"],
         ["--bones", "2"], ["--influences", "1"], ["--patches", "2"], ["--patches", "0"],
         ["--frame-pattern", "dyadic:4"], ["--frame-pattern", "first"], ["--prediction", "layers"],
         ["--no-clusters"], ["--temporal-layers", "3"], ["--component-groups", "2"],

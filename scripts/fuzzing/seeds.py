@@ -13,7 +13,7 @@ MAX_SEED_BYTES = 1 << 16
 STREAM_HEADER_BYTES = 10
 UNIT_HEADER = struct.Struct(">BI")
 CRC_BYTES = 4
-SEQUENCE_HEADER, CONNECTIVITY, VERTEX_ORDER, GOF, SLICE, MODEL = 1, 2, 3, 4, 6, 7
+SEQUENCE_HEADER, CONNECTIVITY, VERTEX_ORDER, GOF, SLICE, RIG = 1, 2, 3, 4, 6, 7
 GOF_INDEX, GOF_HASH, METADATA, ATTRIBUTES, CLIP_TABLE = 129, 130, 131, 136, 138
 # In the order of decoder/fuzz/payload_fuzz.cpp.
 SMALL_PAYLOADS = [VERTEX_ORDER, GOF_HASH, GOF_INDEX, METADATA, CLIP_TABLE]
@@ -236,7 +236,7 @@ def is_main(header):
 
 
 def skinned_gof_seeds(found, counts):
-    """GOFs with the slices that follow them; with all skinned models before them."""
+    """GOFs with the slices that follow them; with all shared rigs before them."""
     yield from high_gof_seeds(found, counts)
     before = {}
     for place, (code, payload) in enumerate(found):
@@ -253,22 +253,22 @@ def skinned_gof_seeds(found, counts):
 def high_gof_seeds(found, _):
     if found[0][1][0] != 2:
         return
-    before, models, of_gof = {}, [], []
+    before, rigs, of_gof = {}, [], []
     frame = None
     for code, payload in [*found, (None, b"")]:
         before.setdefault(code, payload)
         if code == SLICE:
-            (of_gof if of_gof else models).append((code, payload))
+            (of_gof if of_gof else rigs).append((code, payload))
             continue
         if of_gof and CONNECTIVITY in before:
             pieces = [before[SEQUENCE_HEADER], before[CONNECTIVITY]]
-            pieces += [bytes([c]) + p for c, p in models + of_gof]
+            pieces += [bytes([c]) + p for c, p in rigs + of_gof]
             if max(map(len, pieces)) < 65536:
                 yield struct.pack("<I", frame | 1 << 31) + b"".join(
                     struct.pack("<H", len(piece)) + piece for piece in pieces)
         of_gof = []
-        if code == MODEL:
-            models.append((code, payload))
+        if code == RIG:
+            rigs.append((code, payload))
         elif code == GOF:
             of_gof, frame = [(code, payload)], min(Bits(payload[:16]).ue(), (1 << 31) - 1)
 

@@ -1,5 +1,5 @@
 // 8.15 Adaptive weights: the filter that adapts the weights of one vertex, also to the frames
-// of a GOF of frames (8.19).
+// of an inter GOF (8.19).
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ inline constexpr int kSpreadFractionBits = 28;
 inline constexpr int kOffsetLog2 = 9;  // of the largest offset, shifted
 inline constexpr int kGainBits = 14;
 // The part of the variance along the offsets that a sample leaves at least. Gains of 14 bits
-// need it: with 1/2^14, filters diverge in GOFs of frames, with 1/2^12, hardly any; 1/2^8 takes
+// need it: with 1/2^14, filters diverge in inter GOFs, with 1/2^12, hardly any; 1/2^8 takes
 // up to 1 % more bytes.
 inline constexpr int kVarianceKeptLog2 = 10;
 inline constexpr int kSpreadShift = 12;      // of the first spread, from a step of the walk

@@ -1,5 +1,5 @@
 // Bones, their influences on vertices and their poses, in the form that writers of skinned
-// meshes need: of skinned GOFs (8.12, 8.13), and of GOFs of clusters, whose local coordinate
+// meshes need: of skinned GOFs (8.12, 8.13), and of cluster GOFs, whose local coordinate
 // frames (8.4) are bones.
 #pragma once
 

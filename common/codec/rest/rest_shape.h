@@ -9,8 +9,8 @@ namespace rlpc {
 inline constexpr int kRestWeightBits = 6;       // of rest_edge_weight and rest_ring_weight
 inline constexpr std::size_t kRestFactors = 3;  // of a vertex: the coordinates
 
-// 6.11 rest_order( ): how rest positions are coded in the High profile, or the first frame of a
-// GOF of frames.
+// 6.11 rest_order( ): how rest positions are coded in the High profile, or the first frame of
+// an inter GOF.
 struct RestSettings {
   bool exact_flag = false;  // RestExact
   bool order_flag = false;  // in an order of their own; the others are of this order

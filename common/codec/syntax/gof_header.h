@@ -17,9 +17,9 @@ enum class GofKind : std::uint8_t {
   kFrames,    // 6.14: frames predicted from frames
 };
 
-// The adjective of a kind, for messages: "a cluster GOF".
+// The name of a kind, for messages: "a cluster GOF".
 constexpr const char* kind_name(GofKind kind) {
-  if (kind == GofKind::kInter) return "frame";
+  if (kind == GofKind::kInter) return "inter";
   return kind == GofKind::kCluster ? "cluster" : "skinned";
 }
 

@@ -1,4 +1,4 @@
-// Benchmarks of GOFs of frames: encoding with low delay, and decoding.
+// Benchmarks of inter GOFs: encoding with low delay, and decoding.
 #pragma once
 
 #include "conformance/studies/bench/bench_animation.h"

@@ -159,7 +159,7 @@ Result<Bytes> SubStreamExtractor::attributes(const UnitHeader& unit) {
   return Bytes{};
 }
 
-// In a GOF of frames, no frame depends on one of a deeper layer, and the first is in layer 0.
+// In an inter GOF, no frame depends on one of a deeper layer, and the first is in layer 0.
 bool SubStreamExtractor::cuts_first_frame() const {
   if (summary_.gofs.empty()) return false;
   const GofSummary& gof = summary_.gofs.front();
@@ -208,8 +208,7 @@ Result<Bytes> SubStreamExtractor::hash(const UnitHeader& unit) {
 Result<Bytes> SubStreamExtractor::new_hash() {
   const auto rigs = cut_reader_->rigs.at(open_->unit.offset);
   if (!rigs) return rigs.error();
-  const auto access_unit =
-      cut_reader_->units.read(open_->unit, open_->gof->first_frame, *rigs);
+  const auto access_unit = cut_reader_->units.read(open_->unit, open_->gof->first_frame, *rigs);
   if (!access_unit) return access_unit.error();
   const bool per_frame = access_unit->hash->per_frame_flag;
   return write_unit(UnitType::kGofHash,

@@ -14,8 +14,8 @@
 #include "decoder/codec/units/access_unit_reader.h"
 #include "decoder/codec/units/byte_source.h"
 #include "decoder/codec/units/gof_summary.h"
-#include "decoder/codec/units/stream_rigs.h"
 #include "decoder/codec/units/stream_reader.h"
+#include "decoder/codec/units/stream_rigs.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

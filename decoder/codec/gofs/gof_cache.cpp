@@ -52,9 +52,8 @@ std::uint64_t GofCache::bytes() const {
   for (auto gof = gofs_.begin(); gof != gofs_.end(); ++gof) {
     sum += (*gof)->gof.memory_bytes;
     const SharedRig* const rig = (*gof)->gof.rig.get();
-    const bool is_first = std::none_of(gofs_.begin(), gof, [&](const auto& before) {
-      return before->gof.rig.get() == rig;
-    });
+    const bool is_first = std::none_of(
+        gofs_.begin(), gof, [&](const auto& before) { return before->gof.rig.get() == rig; });
     if (rig != nullptr && is_first) sum += memory_of_rig(*rig);
   }
   return sum;

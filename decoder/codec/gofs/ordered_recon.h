@@ -1,4 +1,4 @@
-// Reconstructs GOFs of frames, which are decoded in order.
+// Reconstructs inter GOFs, which are decoded in order.
 #pragma once
 
 #include <cstdint>

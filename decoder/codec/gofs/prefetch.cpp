@@ -191,7 +191,7 @@ std::optional<Prefetch::Ahead> Prefetch::collect(std::uint64_t offset,
 }
 
 std::shared_ptr<Prefetch::RigAhead> Prefetch::collect_rig(const UnitHeader& unit,
-                                                              std::uint64_t max_bytes) {
+                                                          std::uint64_t max_bytes) {
   auto coded = stream_.access_units().collect_rig(unit, max_bytes);
   if (!coded) return nullptr;
   auto rig = make_shared_owned<RigAhead>();
@@ -231,8 +231,7 @@ std::optional<RigSlots> Prefetch::parse(const Slots& slots) const {
 std::optional<PreparedGof> Prefetch::parse(const Ahead& ahead) const {
   const auto rigs = parse(ahead.rigs);
   if (!rigs) return std::nullopt;
-  auto access_unit =
-      stream_.access_units().parse(ahead.coded, *rigs, cut_, max_memory_bytes_);
+  auto access_unit = stream_.access_units().parse(ahead.coded, *rigs, cut_, max_memory_bytes_);
   if (!access_unit) return std::nullopt;
   return prepare(std::move(*access_unit), stream_.context(), rigs_, max_frame_bytes_);
 }

@@ -12,8 +12,8 @@
 
 #include "common/memory/owned.h"
 #include "common/parallel/for_each.h"
-#include "decoder/codec/gofs/rig_recons.h"
 #include "decoder/codec/gofs/prepared_gof.h"
+#include "decoder/codec/gofs/rig_recons.h"
 #include "decoder/codec/units/stream_reader.h"
 
 namespace rlpc {
@@ -71,7 +71,7 @@ class Prefetch {
     RawAccessUnit coded;
     // Since the GOF before; at most kMaxRigs, or the GOF is not prepared.
     Vector<std::shared_ptr<RigAhead>> new_models;
-    Slots rigs;                    // those alive
+    Slots rigs;                      // those alive
     std::uint32_t first_wanted = 0;  // frame of the GOF
     std::optional<PreparedGof> gof;
     std::future<bool> done;

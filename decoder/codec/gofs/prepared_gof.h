@@ -27,7 +27,7 @@ struct PreparedGof {
   std::uint64_t frame_bytes = 0;  // of it, the frames
 };
 
-// max_frame_bytes: of decoded frames that a GOF of frames keeps for the way back.
+// max_frame_bytes: of decoded frames that an inter GOF keeps for the way back.
 PreparedGof prepare(AccessUnit access_unit, const StreamContext& context, RigRecons& rigs,
                     std::uint64_t max_frame_bytes);
 

@@ -59,14 +59,14 @@ constexpr std::uint64_t memory_of_vertices(std::uint64_t num_vertices, bool has_
   constexpr std::uint64_t kBytesPerCounterpart = 64;
   return num_vertices * (kBytesPerVertex + (has_rest_order ? kBytesPerCounterpart : 0));
 }
-// In a GOF of tracks with local component groups: the adaptive weights as the shared rig has
-// left them.
+// In a skinned GOF with a shared rig with local component groups: the adaptive weights as the
+// shared rig has left them.
 constexpr std::uint64_t memory_of_adaptive_weights(std::uint64_t num_vertices) {
   constexpr std::uint64_t kBytesPerVertex = 130;
   return num_vertices * kBytesPerVertex;
 }
 
-// A GOF of frames: frames without their residuals, and their order; per vertex the position in
+// An inter GOF: frames without their residuals, and their order; per vertex the position in
 // several frames, neighbours and weights; with learned weights, for each temporal layer, errors
 // and a filter; rigs of layer groups, for each depth.
 inline std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t num_frames,

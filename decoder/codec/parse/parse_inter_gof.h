@@ -1,4 +1,4 @@
-// 6.14: GOFs of frames and their frame units, parsing side.
+// 6.14: inter GOFs and their frame units, parsing side.
 #pragma once
 
 #include <cstdint>

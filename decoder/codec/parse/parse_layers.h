@@ -1,4 +1,4 @@
-// 6.11 layer_groups( ) and layer_steps( ): the layers of a rig, or of a GOF of frames.
+// 6.11 layer_groups( ) and layer_steps( ): the layers of a rig, or of an inter GOF.
 #pragma once
 
 #include <cstdint>

@@ -123,7 +123,7 @@ void SkinnedGofParser::rig_header(BitReader& r) {
   if (!r.error()) gof_.bones.resize(num_bones);
 }
 
-// The part of a GOF of bones or shared rig that begins with rig_header( ).
+// The part of a skinned GOF or shared rig that begins with rig_header( ).
 Result<bool> SkinnedGofParser::rig(BitReader& r) {
   rig_header(r);
   r.byte_alignment();

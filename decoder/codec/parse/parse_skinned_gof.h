@@ -22,7 +22,7 @@ namespace rlpc {
 
 class SectionReader;
 
-// Of a rig unit, or of a GOF of tracks.
+// Of a rig unit, or of a skinned GOF with a shared rig.
 std::uint32_t parse_rig_idx(BitReader& r);
 
 // The unit of a skinned GOF or shared rig and the slice units after it, one by one. Every

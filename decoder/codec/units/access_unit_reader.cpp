@@ -116,8 +116,7 @@ Result<bool> AccessUnitReader::parse_unit(AccessUnitParser& parser, const UnitHe
   }
 }
 
-Result<ParsedRig> AccessUnitReader::read_rig(const UnitHeader& rig_unit,
-                                                 const RigSlots& rigs) {
+Result<ParsedRig> AccessUnitReader::read_rig(const UnitHeader& rig_unit, const RigSlots& rigs) {
   RigParser parser(context_, memory_limit(), cut_);
   const std::uint64_t of_rigs = memory_of_rigs(rigs);
   for (std::optional<UnitHeader> unit = rig_unit; unit;) {
@@ -137,7 +136,7 @@ Result<ParsedRig> AccessUnitReader::read_rig(const UnitHeader& rig_unit,
 }
 
 std::optional<Vector<RawUnit>> AccessUnitReader::collect_rig(const UnitHeader& rig_unit,
-                                                               std::uint64_t max_memory_bytes) {
+                                                             std::uint64_t max_memory_bytes) {
   Vector<RawUnit> coded;
   std::uint64_t num_bytes = 0;
   for (std::optional<UnitHeader> unit = rig_unit; unit;) {
@@ -154,8 +153,8 @@ std::optional<Vector<RawUnit>> AccessUnitReader::collect_rig(const UnitHeader& r
 }
 
 Result<ParsedRig> AccessUnitReader::parse_rig(const Vector<RawUnit>& coded,
-                                                  const RigSlots& rigs, const SliceCut& cut,
-                                                  std::uint64_t max_memory_bytes) const {
+                                              const RigSlots& rigs, const SliceCut& cut,
+                                              std::uint64_t max_memory_bytes) const {
   const MemoryLimit memory = limit_ahead(max_memory_bytes);
   const std::uint64_t of_rigs = memory_of_rigs(rigs);
   RigParser parser(context_, memory, cut);
@@ -173,7 +172,7 @@ Result<bool> AccessUnitReader::parse_unit(RigParser& parser, const UnitHeader& u
   BitReader r = units_.bits(unit, payload);
   const std::uint64_t unit_bytes = unit.end() - unit.offset;
   return unit.type() == UnitType::kRig ? parser.rig(r, rigs, unit_bytes)
-                                         : parser.slice(r, unit.offset * 8, unit_bytes);
+                                       : parser.slice(r, unit.offset * 8, unit_bytes);
 }
 
 Result<std::optional<UnitHeader>> AccessUnitReader::slice_after(const UnitHeader& unit) {

@@ -78,9 +78,9 @@ class AccessUnitReader {
                            const SliceCut& cut, std::uint64_t max_memory_bytes) const;
   // The same for a shared rig.
   std::optional<Vector<RawUnit>> collect_rig(const UnitHeader& rig_unit,
-                                               std::uint64_t max_memory_bytes);
+                                             std::uint64_t max_memory_bytes);
   Result<ParsedRig> parse_rig(const Vector<RawUnit>& coded, const RigSlots& rigs,
-                                  const SliceCut& cut, std::uint64_t max_memory_bytes) const;
+                              const SliceCut& cut, std::uint64_t max_memory_bytes) const;
 
  private:
   Result<bool> parse_unit(AccessUnitParser& parser, const UnitHeader& unit,

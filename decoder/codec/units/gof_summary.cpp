@@ -28,7 +28,7 @@ GofFigure temporal_layers_of(const SkinnedGof& gof) {
           static_cast<std::uint32_t>(gof.num_temporal_layers), true};
 }
 
-// What has vertices in a GOF of bones or shared rig.
+// What has vertices in a skinned GOF or shared rig.
 void add_rig(const SharedRig& rig, SlicedSummary& summary) {
   summary.layer_group_size = rig.layer_group_size;
   summary.first_group = "influences, rest positions";

@@ -95,7 +95,7 @@ struct GofSummary : SlicedSummary {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
   std::shared_ptr<const RigSummary> rig;  // that it uses; null: none
-  Vector<VertexModes> vertex_modes;           // [num_frames] if it has patches
+  Vector<VertexModes> vertex_modes;       // [num_frames] if it has patches
 
   // Bytes and slices are its own; layers are those of its shared rig.
   SliceTotals totals(const SliceGroups& groups) const;

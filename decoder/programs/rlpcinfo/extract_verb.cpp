@@ -69,8 +69,8 @@ void print_json(const ExtractOptions& o, const SubStreamExtractor& cutter,
   nlohmann::ordered_json rigs = nlohmann::ordered_json::array();
   for (const auto& rig : cutter.summary().rigs) {
     rigs.push_back({{"rig_idx", rig->rig_idx},
-                      {"before", json_of(rig->totals({}))},
-                      {"after", json_of(cutter.totals_that_stay(*rig))}});
+                    {"before", json_of(rig->totals({}))},
+                    {"after", json_of(cutter.totals_that_stay(*rig))}});
   }
   nlohmann::ordered_json gofs = nlohmann::ordered_json::array();
   for (const GofSummary& gof : cutter.summary().gofs) {

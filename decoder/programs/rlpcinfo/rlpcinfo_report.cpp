@@ -179,9 +179,9 @@ void print_kinds(const StreamSummary& stream) {
     for (const GofSummary& gof : stream.gofs) {
       if (gof.kind == kind) gofs.push_back(&gof);
     }
-    print_figures(
-        kind == GofKind::kSharedRig ? "GOFs of tracks" : std::string(kind_name(kind)) + " GOFs",
-        gofs);
+    print_figures(kind == GofKind::kSharedRig ? "skinned GOFs with shared rigs"
+                                              : std::string(kind_name(kind)) + " GOFs",
+                  gofs);
   }
 }
 
@@ -272,9 +272,8 @@ void print_gof(const GofSummary& gof) {
     std::printf("%s in %" PRIu64 " bytes\n", listed(figures_of(gof)).c_str(), gof.bytes);
     return;
   }
-  const std::string what = gof.rig
-                               ? "tracks of shared rig " + std::to_string(gof.rig->number)
-                               : figures_of(gof)[0];  // the table has the others
+  const std::string what = gof.rig ? "tracks of shared rig " + std::to_string(gof.rig->number)
+                                   : figures_of(gof)[0];  // the table has the others
   const char* units = gof.kind == GofKind::kInter ? "frame units" : "slices";
   std::printf("%s in %" PRIu64 " bytes; %s in bytes\n", what.c_str(), gof.bytes, units);
   print_slices(gof, "GOF to here");

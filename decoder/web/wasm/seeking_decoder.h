@@ -28,7 +28,7 @@ class SeekingDecoder {
 
   // The functions below return false if there is an error, which is then in error().
   bool open();
-  // Finds where access units and skinned models begin (6.9): landmarks().
+  // Finds where access units and shared rigs begin (6.9): landmarks().
   bool find_index();
   // Decodes a frame below num_frames; seeks unless it is the next one. A frame that does not
   // match its hash is decoded nevertheless: returns true and sets hash_differs() and error().
@@ -47,7 +47,7 @@ class SeekingDecoder {
   // Of an open-ended stream that has been cut off, the frames of all GOFs that are whole, or 1.
   // It may read: bytes that are missing count as cut off.
   std::uint32_t num_frames();
-  // Offsets of GOF and skinned model units in the GOF index, and of what comes after the last
+  // Offsets of GOF and rig units in the GOF index, and of what comes after the last
   // of their access units, ascending; empty if the stream has no index.
   std::span<const std::uint64_t> landmarks() const { return landmarks_; }
 

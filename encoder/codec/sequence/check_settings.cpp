@@ -82,7 +82,7 @@ std::optional<InputError> check_low_delay(const EncoderSettings& s) {
         "--low-delay"};
   }
   if (s.kinds != KindChoice::kAuto && s.kinds != KindChoice::kInter) {
-    return InputError{"low delay needs GOFs of frames: leave out --gof-kind"};
+    return InputError{"low delay needs inter GOFs: leave out --gof-kind"};
   }
   if (s.target.kind == Target::kBpvf) {
     return InputError{
@@ -119,7 +119,7 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
         "out --gof-kind"};
   }
   if (s.kinds == KindChoice::kInter && s.profile != Profile::kHigh) {
-    return InputError{"GOFs of frames need --profile high: use that, or leave out --gof-kind"};
+    return InputError{"inter GOFs need --profile high: use that, or leave out --gof-kind"};
   }
   if (s.target.kind == Target::kLossless) {
     if (s.profile != Profile::kHigh) {
@@ -129,7 +129,7 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
     }
     if (s.kinds != KindChoice::kAuto && s.kinds != KindChoice::kInter) {
       return InputError{
-          "only GOFs of frames are lossless: use --gof-kind frames, or leave out --gof-kind or "
+          "only inter GOFs are lossless: use --gof-kind inter, or leave out --gof-kind or "
           "--lossless"};
     }
   }
@@ -137,17 +137,17 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
   const KindChoice kinds = s.usable_kinds();
   const bool has_bones = kinds == KindChoice::kAuto || kinds == KindChoice::kSkinned;
   if (kinds == KindChoice::kInter && s.components > 0) {
-    return InputError{"--components has no effect on GOFs of frames: leave it out"};
+    return InputError{"--components has no effect on inter GOFs: leave it out"};
   }
   if (!has_bones && s.main != MainTools{}) {
     return InputError{
         "the settings of bones and trajectories have no effect on GOFs without "
-        "bones: leave them out, or use --gof-kind auto or bones"};
+        "bones: leave them out, or use --gof-kind auto or skinned"};
   }
   if (auto error = check_pattern(s)) return error;
   if (kinds == KindChoice::kAuto && (s.inter.temporal_layers > 1 || s.inter.layer_groups > 1)) {
     return InputError{
-        "layers of GOFs of frames need GOFs of this kind alone: use --gof-kind frames"};
+        "layers of inter GOFs need GOFs of this kind alone: use --gof-kind inter"};
   }
   if (s.inter.layer_groups < 1) return InputError{"there is at least one layer group"};
   const bool has_frames = kinds == KindChoice::kAuto || kinds == KindChoice::kInter;
@@ -155,7 +155,7 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
     return InputError{
         "--frame-pattern, --frame-weights, --patches and, except for Baseline, --partition "
         "need "
-        "--profile high and --gof-kind frames: use these, or leave them out"};
+        "--profile high and --gof-kind inter: use these, or leave them out"};
   }
   return std::nullopt;
 }

@@ -1,4 +1,4 @@
-// Encodes frames that arrive one by one, each when it arrives, in GOFs of frames.
+// Encodes frames that arrive one by one, each when it arrives, in inter GOFs.
 #pragma once
 
 #include <cstdint>

@@ -28,7 +28,7 @@ std::uint64_t frames_in_memory(const EncoderSettings& settings, std::uint32_t nu
   return std::min<std::uint64_t>(positions / num_vertices, kMaxFrames);
 }
 
-// Per vertex, what the encodings of a GOF of frames that are compared hold: positions, as
+// Per vertex, what the encodings of an inter GOF that are compared hold: positions, as
 // doubles and floats and decoded, and what each encoding learns.
 std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHeader& header,
                               std::uint32_t num_frames) {

@@ -67,7 +67,7 @@ bool Rival::is_out_of_reach(const BatchTrial& trial, std::uint32_t first, double
 }
 
 bool Rival::has_high_rank() const {
-  // fixed: As where GOFs of frames are tried (kManyTrajectories); some fewer, as not all that
+  // fixed: As where inter GOFs are tried (kManyTrajectories); some fewer, as not all that
   // are expected are coded.
   constexpr double kMany = 0.2;
   return std::any_of(best_.spans.begin(), best_.spans.end(), [&](const SpanResult& span) {

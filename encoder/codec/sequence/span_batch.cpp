@@ -185,8 +185,10 @@ InputResult<SpanBatch::MeasuredSpan> SpanBatch::encode(Span& span, double step,
 }
 
 // None: it costs at least `most`.
-InputResult<std::optional<SpanBatch::MeasuredSpan>> SpanBatch::encode_with(
-    const KeptRig& rig, Span& span, double step, double most) {
+InputResult<std::optional<SpanBatch::MeasuredSpan>> SpanBatch::encode_with(const KeptRig& rig,
+                                                                           Span& span,
+                                                                           double step,
+                                                                           double most) {
   if (auto error = read(span)) return *error;
   const auto encoded = coding_.encode_with(rig, span.frames, step, most);
   span.frames = {};
@@ -256,8 +258,7 @@ std::optional<InputError> SpanBatch::encode_some(SpanRange spans, double step,
   return for_each_span(spans.count, [&](std::size_t i) -> std::optional<InputError> {
     if (!rigs[i]) return std::nullopt;
     Span& span = spans_[spans.first + i];
-    auto with_rig =
-        encode_with(*rigs[i], span, step, std::numeric_limits<double>::infinity());
+    auto with_rig = encode_with(*rigs[i], span, step, std::numeric_limits<double>::infinity());
     if (!with_rig) return with_rig.error();
     measured[spans.first + i] = std::move(*with_rig);
     set_done(span, 1.0);

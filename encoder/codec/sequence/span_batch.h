@@ -29,7 +29,7 @@ struct SpanResult {
   // The shared rig that it brings; null: none, or Options::keep_decoded is not set.
   std::shared_ptr<const KeptRig> rig;
   DecodeCut cut;                     // of GOFs with one temporal layer: empty
-  std::vector<InterChoice> choices;  // of each GOF of frames
+  std::vector<InterChoice> choices;  // of each inter GOF
   // Frames of the sequence that Options::kept_frames lists, ascending.
   std::vector<DecodedFrame> kept{};
 };

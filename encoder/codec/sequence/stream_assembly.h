@@ -15,7 +15,7 @@ namespace rlpc {
 // The units of one GOF as bytes of a stream.
 struct GofBytes {
   std::uint32_t num_frames = 0;
-  Bytes rig;      // the shared rig that comes before it, and its slices; empty: none
+  Bytes rig;        // the shared rig that comes before it, and its slices; empty: none
   Bytes units;      // GOF unit and slices
   Bytes hash_unit;  // empty: none
   // The GOF has hashes in its frame units, and there must be no hash unit (7.2).

@@ -40,7 +40,7 @@ inline constexpr std::uint32_t kRigIdx = 0;  // fixed: any would do
 // A shared rig as it was coded, with all that later spans need to use it.
 struct KeptRig;
 
-// What has been chosen for a GOF of frames.
+// What has been chosen for an inter GOF.
 struct InterChoice {
   FramePattern pattern;
   std::uint32_t num_patches = 0;
@@ -65,7 +65,7 @@ struct EncodedSpan {
   std::shared_ptr<const KeptRig> rig;
   // The squared error of all frames, in squared grid steps; none: not known.
   std::optional<double> squared_error;
-  std::vector<InterChoice> choices;   // of each GOF of frames
+  std::vector<InterChoice> choices;   // of each inter GOF
   std::uint64_t num_factors = 0;      // NumFactors of the specification, the largest
   std::uint64_t adaptive_values = 0;  // adaptive factors times vertices
   std::uint32_t clusters = 0;         // clusters of all GOFs, or bones

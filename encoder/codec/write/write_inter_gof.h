@@ -1,4 +1,4 @@
-// 6.14: GOFs of frames and their frame units, writing side.
+// 6.14: inter GOFs and their frame units, writing side.
 #pragma once
 
 #include <cstddef>

@@ -36,7 +36,7 @@ std::vector<std::uint8_t> write_bone_section(const SharedRig& rig, Unit unit,
 // 6.12 slice_unit( ): writes the slices of a GOF or shared rig in order.
 class SliceWriter {
  public:
-  // shared: the shared rig of a GOF of tracks.
+  // shared: the shared rig of a skinned GOF with a shared rig.
   SliceWriter(const SharedRig& gof, const OrderedMesh& mesh, Unit unit,
               const TrackFrames& frames, const SharedRig* shared = nullptr)
       : gof_(gof),
@@ -269,8 +269,8 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
   return w.take();
 }
 
-// Of a GOF of tracks, slice_layers says of the groups of the shared rig only whether they
-// have a slice.
+// Of a skinned GOF with a shared rig, slice_layers says of the groups of the shared rig only
+// whether they have a slice.
 SkinnedGofPayloads SliceWriter::write_all(std::vector<std::uint8_t> first,
                                           std::span<const std::uint32_t> temporal_layers) {
   SkinnedGofPayloads payloads{std::move(first), {}, {}};
@@ -334,7 +334,7 @@ SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const OrderedMesh& m
 }
 
 SkinnedGofPayloads write_shared_rig(const SharedRig& rig, std::uint32_t rig_idx,
-                                       const OrderedMesh& mesh, const SequenceHeader& header) {
+                                    const OrderedMesh& mesh, const SequenceHeader& header) {
   BitWriter w;
   w.u(3, rig_idx);
   write_rig_header(w, rig, header.profile_idc);

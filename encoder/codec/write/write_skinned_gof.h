@@ -24,7 +24,7 @@ SkinnedGofPayloads write_skinned_gof(const SkinnedGof& gof, const OrderedMesh& m
                                      const SequenceHeader& header);
 // 6.13 rig( )
 SkinnedGofPayloads write_shared_rig(const SharedRig& rig, std::uint32_t rig_idx,
-                                       const OrderedMesh& mesh, const SequenceHeader& header);
+                                    const OrderedMesh& mesh, const SequenceHeader& header);
 // 6.13.1 tracks_of_gof( )
 SkinnedGofPayloads write_tracks(const SkinnedGof& gof, const OrderedMesh& mesh,
                                 const SequenceHeader& header);

@@ -46,13 +46,14 @@ void add_profile_options(CLI::App& app, EncodeCommandLine& line) {
       {{"high", Profile::kHigh}, {"main", Profile::kMain}, {"baseline", Profile::kBaseline}},
       "Profile of the stream: main (default), baseline, or high (version 1.2, in preparation)")
       ->group(method);
-  add_choice<KindChoice>(app, "--gof-kind", line.options.settings.kinds,
-                         {{"auto", KindChoice::kAuto},
-                          {"clusters", KindChoice::kCluster},
-                          {"bones", KindChoice::kSkinned},
-                          {"frames", KindChoice::kInter}},
-                         "Groups of frames: auto (the cheapest, default), clusters, bones, "
-                         "frames (each from decoded ones, High profile)")
+  add_choice<KindChoice>(
+      app, "--gof-kind", line.options.settings.kinds,
+      {{"auto", KindChoice::kAuto},
+       {"cluster", KindChoice::kCluster},
+       {"skinned", KindChoice::kSkinned},
+       {"inter", KindChoice::kInter}},
+      "Kind of GOF: auto (the cheapest for each, default), cluster, skinned, "
+      "inter (each frame from decoded ones, High profile)")
       ->group(method);
   app.add_option("--components", line.options.settings.components,
                  "Maximum per GOF; Baseline: average per cluster, L of the paper (default: by "
@@ -74,7 +75,7 @@ void add_profile_options(CLI::App& app, EncodeCommandLine& line) {
 }
 
 void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
-  const std::string frames = "GOFs of frames, High profile";
+  const std::string frames = "inter GOFs, High profile";
   InterTools& t = line.options.settings.inter;
   app.add_option(
          "--frame-pattern", line.frame_pattern,

@@ -203,7 +203,7 @@ MAIN_ABLATIONS = (
     variant("bones", "one bone", "#b8a800", "--bones 1"),
     variant("basis-steps", "basis steps as COBRA", "#777777", "--basis-steps cobra"),
 )
-# The tools that High has beyond Main. Its skinned models show in short GOFs: compare --gof all,64.
+# The tools that High has beyond Main. Its shared rigs show in short GOFs: compare --gof all,64.
 HIGH_ABLATIONS = (
     HIGH,
     variant("clusters", "High, no clusters", "#000000", "--no-clusters", "High"),

@@ -43,7 +43,7 @@ _REGISTRATION = (
     "and D of each vertex are replaced by a mode of each patch in each frame, and residuals.",
     "Recursive spectral cuts, and a number of clusters that follows from the mesh: not reproduced; k "
     "eigenvectors are clustered at once, and the number is that of table 1, or half of k-way's.",
-    "I meshes where motion is fast: not inserted. GOFs of frames have equal lengths, and here the "
+    "I meshes where motion is fast: not inserted. Inter GOFs have equal lengths, and here the "
     "whole sequence is one; only the automatic mode of the Main and High profiles ends GOFs by their "
     "content.",
     "Bits by a PSNR threshold: there is no such target. The error of each stream is searched for until "

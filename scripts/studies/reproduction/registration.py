@@ -16,7 +16,7 @@ import registration_published as published
 import registration_tables
 from paper import OURS, page, report
 
-FRAMES = ["--profile", "high", "--gof-kind", "frames", "--frame-pattern", "previous"]
+FRAMES = ["--profile", "high", "--gof-kind", "inter", "--frame-pattern", "previous"]
 PLAIN = [*FRAMES, "--frame-weights", "plain", "--rest", "prediction"]
 MORE_SPECTRAL = "spectral (as many)"  # as by k-way
 CLUSTERINGS = {  # --partition, colour and line

@@ -11,7 +11,7 @@ import temporal_cuts
 from bench import FLAT
 from paper import OURS, page, report
 
-FRAMES = ["--profile", "high", "--gof-kind", "frames"]
+FRAMES = ["--profile", "high", "--gof-kind", "inter"]
 PLAIN = ["--frame-weights", "plain", "--rest", "prediction", "--patches", 0]
 ONE_SIDE = ["--frame-pattern", "previous"]
 BOTH_SIDES = ["--frame-pattern", "dyadic:2"]  # even frames from both sides, odd from the odd before

@@ -1,4 +1,4 @@
-// 7.14.1 Frame pattern: in which order the frames of a GOF of frames are coded, and from which
+// 7.14.1 Frame pattern: in which order the frames of an inter GOF are coded, and from which
 // frames each is predicted.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Models and contexts of a GOF of frames (clause 9.8.6). The parser and the writer drive them
+// Models and contexts of an inter GOF (clause 9.8.6). The parser and the writer drive them
 // in the same way.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace rlpc {
 
 inline constexpr std::size_t kFrameClasses = 3;
 
-// Expected magnitudes of the residuals of a GOF of frames.
+// Expected magnitudes of the residuals of an inter GOF.
 class InterContexts {
  public:
   // The mesh must have layers, and outlive it.

@@ -1,4 +1,4 @@
-// 6.14: a GOF of frames, each predicted from decoded ones.
+// 6.14: an inter GOF, each predicted from decoded ones.
 #pragma once
 
 #include <cstdint>

@@ -119,11 +119,11 @@ struct SkinnedGof : GofHeader, SharedRig {
   // [group], the temporal layers besides the first of which it has a slice; empty if there are
   // none in the GOF. Residuals of absent slices are zero.
   Vector<std::uint32_t> temporal_layers;
-  // 6.13.1, of a GOF of tracks: the shared rig that it uses; null for other kinds. What has
-  // vertices is then there. The settings, bones and leading trajectories of the GOF are those
-  // of the rig, with their motion; slice_layers counts the component groups of both; and
-  // group_end and vertex_residual are those of the local component groups, with [0] as the end
-  // of the last group of the rig.
+  // 6.13.1, of a skinned GOF with a shared rig: the shared rig that it uses; null for other
+  // kinds. What has vertices is then there. The settings, bones and leading trajectories of the
+  // GOF are those of the rig, with their motion; slice_layers counts the component groups of
+  // both; and group_end and vertex_residual are those of the local component groups, with [0]
+  // as the end of the last group of the rig.
   std::shared_ptr<const SharedRig> rig;
   std::uint32_t rig_idx = 0;
   std::uint32_t num_local_groups = 0;

@@ -95,7 +95,7 @@ class WasmStream {
     return header;
   }
 
-  /** Offsets where GOFs and skinned models begin, and the end of the last. */
+  /** Offsets where GOFs and shared rigs begin, and the end of the last. */
   landmarks() {
     this.check("stream_find_index");
     const count = this.ask("stream_num_landmarks");

@@ -1,4 +1,4 @@
-// Checks the pattern of GOFs of frames (7.14.1).
+// Checks the pattern of inter GOFs (7.14.1).
 #pragma once
 
 #include <optional>

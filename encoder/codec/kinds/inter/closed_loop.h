@@ -1,4 +1,4 @@
-// Codes a GOF of frames (6.14, 8.19): frame by frame, layer by layer, in closed loop.
+// Codes an inter GOF (6.14, 8.19): frame by frame, layer by layer, in closed loop.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The first frame of a GOF of frames, which is predicted from no other.
+// The first frame of an inter GOF, which is predicted from no other.
 #pragma once
 
 #include <memory>

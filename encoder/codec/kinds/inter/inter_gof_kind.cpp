@@ -19,7 +19,7 @@
 namespace rlpc {
 namespace {
 
-// tuned (off: 1): GOFs of frames are tried where trajectories number at least this fraction of
+// tuned (off: 1): inter GOFs are tried where trajectories number at least this fraction of
 // their maximum. Below, trajectories of all frames are the better basis.
 constexpr double kManyTrajectories = 0.3;
 

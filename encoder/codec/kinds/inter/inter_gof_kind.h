@@ -1,4 +1,4 @@
-// Registers GOFs of frames as a kind of GOF (clauses 6.14 and 8.19).
+// Registers inter GOFs as a kind of GOF (clauses 6.14 and 8.19).
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace rlpc {
 
-// Null below the High profile, or if the settings exclude GOFs of frames.
+// Null below the High profile, or if the settings exclude inter GOFs.
 std::unique_ptr<KindEncoder> make_inter_gof_kind(const SequenceMesh& mesh,
                                                  const EncoderSettings& settings);
 

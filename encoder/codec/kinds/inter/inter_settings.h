@@ -1,4 +1,4 @@
-// Chooses the settings of a GOF of frames.
+// Chooses the settings of an inter GOF.
 #pragma once
 
 #include <cstdint>

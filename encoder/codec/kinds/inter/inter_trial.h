@@ -1,4 +1,4 @@
-// One encoding of a GOF of frames at one step, which can stop between frames.
+// One encoding of an inter GOF at one step, which can stop between frames.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Chooses the pattern and the number of patches of a GOF of frames by its bits at equal error.
+// Chooses the pattern and the number of patches of an inter GOF by its bits at equal error.
 #pragma once
 
 #include <cstdint>

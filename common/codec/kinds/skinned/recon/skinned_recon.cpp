@@ -57,8 +57,7 @@ TemporalFactor temporal_factor(const Trajectory& trajectory, int track_levels) {
 // 8.14.3 Positions
 SkinnedRecon::SkinnedRecon(const OrderedMesh& mesh, const SkinnedGof& gof, int position_bits,
                            const Kernels& loops)
-    : SkinnedRecon(make_shared_owned<RigRecon>(mesh, gof, position_bits, false), gof, loops) {
-}
+    : SkinnedRecon(make_shared_owned<RigRecon>(mesh, gof, position_bits, false), gof, loops) {}
 
 SkinnedRecon::SkinnedRecon(std::shared_ptr<const RigRecon> rig, const SkinnedGof& gof,
                            const Kernels& loops)

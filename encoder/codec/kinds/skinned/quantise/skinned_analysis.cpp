@@ -248,8 +248,8 @@ class SkinnedAnalyser {
     RestEncoding coded =
         code_rest_in_order(mesh_, rounded, rig.rest_step, position_bits_,
                            {.few = settings_.draft, .counterparts = counterparts});
-    if (!(coded.cost < rest_cost_in_layers(mesh_, rounded, rig.rest_step,
-                                           rig.vertex_residual[0], values))) {
+    if (!(coded.cost <
+          rest_cost_in_layers(mesh_, rounded, rig.rest_step, rig.vertex_residual[0], values))) {
       return;
     }
     rig.rest = coded.settings;
@@ -290,8 +290,8 @@ class SkinnedAnalyser {
                   const auto v = static_cast<std::uint32_t>(first + i);
                   write_displacement(
                       frames_, chosen, v,
-                      motions.of(found_.rig.influences[v], found_.rig.weight_bits),
-                      rest_of(v), &rows[i * width]);
+                      motions.of(found_.rig.influences[v], found_.rig.weight_bits), rest_of(v),
+                      &rows[i * width]);
                 }
               });
             }};

@@ -240,8 +240,7 @@ SpatialValues code_spatial_values(const OrderedMesh& mesh, const SharedRig& rig,
                     std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
   }
   const ValuePrediction prediction(mesh, false, weights ? &*weights : nullptr);
-  std::optional<AdaptiveWeights> adaptive =
-      start_weights(mesh, rig, analysis, weights, shared);
+  std::optional<AdaptiveWeights> adaptive = start_weights(mesh, rig, analysis, weights, shared);
   if (adaptive) {
     const std::size_t before = shared != nullptr ? shared->factors()->num_components() : 0;
     adaptive->start(before, count, group_end);

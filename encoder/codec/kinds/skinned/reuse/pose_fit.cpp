@@ -41,8 +41,7 @@ WantedPose pose_of(const Motion& motion, const Vec3d& pivot, const WantedPose* b
 
 }  // namespace
 
-PoseFit::PoseFit(const SharedRig& rig,
-                 const std::array<std::vector<std::int32_t>, 3>& rest)
+PoseFit::PoseFit(const SharedRig& rig, const std::array<std::vector<std::int32_t>, 3>& rest)
     : rig_(rig), moments_(rig.bones.size()) {
   const std::size_t n = rig.influences.size();
   for (std::size_t v = 0; v < n; ++v) {

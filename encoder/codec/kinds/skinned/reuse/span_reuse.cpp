@@ -14,8 +14,8 @@
 #include "encoder/codec/kinds/skinned/quantise/span_tracks.h"
 #include "encoder/codec/kinds/skinned/quantise/spatial_left.h"
 #include "encoder/codec/kinds/skinned/quantise/temporal_values.h"
-#include "encoder/codec/kinds/skinned/reuse/rig_factors.h"
 #include "encoder/codec/kinds/skinned/reuse/pose_fit.h"
+#include "encoder/codec/kinds/skinned/reuse/rig_factors.h"
 #include "encoder/codec/kinds/skinned/search/span_units.h"
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/spans/component_cost.h"
@@ -131,7 +131,7 @@ RigRemainder SpanReuse::remainder(const FrameRange& span, bool has_temporal) con
   for (const BoneMotion& bone : bones_)
     motions.push_back(motions_of(bone, span.first, span.count));
   RigRemainder left(kept_, factors_, frames_, numbers_from(span.first, span.count),
-                      std::move(motions));
+                    std::move(motions));
   if (!has_temporal || factors_.count() == 0) return left;
   std::vector<double> temporal;
   temporal.reserve(factors_.count() * left.width());
@@ -242,9 +242,8 @@ EncodedSpan SpanReuse::encode() {
 
 }  // namespace
 
-std::optional<EncodedSpan> encode_with_rig(const SkinnedContext& context,
-                                             const KeptRig& kept, const SpanFrames& frames,
-                                             double step, double most) {
+std::optional<EncodedSpan> encode_with_rig(const SkinnedContext& context, const KeptRig& kept,
+                                           const SpanFrames& frames, double step, double most) {
   // tuned (off: 1e9): A span is encoded with an earlier rig if its expected cost is at most
   // this multiple of what it must not exceed. Expectations are too high: they leave out that
   // weights of prediction adapt.

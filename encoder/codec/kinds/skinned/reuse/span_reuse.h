@@ -1,4 +1,4 @@
-// Encodes a span with the shared rig of an earlier one: as GOFs of tracks alone.
+// Encodes a span with the shared rig of an earlier one: as skinned GOFs with shared rigs alone.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,7 @@ namespace rlpc {
 
 // None: it costs at least `most` (Lagrangian cost), or is expected to cost far more. step:
 // quantiser step, grid units.
-std::optional<EncodedSpan> encode_with_rig(const SkinnedContext& context,
-                                             const KeptRig& kept, const SpanFrames& frames,
-                                             double step, double most);
+std::optional<EncodedSpan> encode_with_rig(const SkinnedContext& context, const KeptRig& kept,
+                                           const SpanFrames& frames, double step, double most);
 
 }  // namespace rlpc

@@ -37,8 +37,8 @@ DecodeFrame frames_of(std::vector<std::shared_ptr<const SkinnedRecon>> recons) {
 }
 
 // Local component groups add trajectories with factors of their own.
-void count(const SharedRig& rig, std::uint64_t num_vertices,
-           std::span<const SkinnedGof> gofs, EncodedSpan& encoded) {
+void count(const SharedRig& rig, std::uint64_t num_vertices, std::span<const SkinnedGof> gofs,
+           EncodedSpan& encoded) {
   const std::uint64_t num_bones = rig.bones.size();
   const std::uint64_t shared = rig.trajectories.size();
   encoded.clusters = static_cast<std::uint32_t>(num_bones);
@@ -60,9 +60,8 @@ void count(const SharedRig& rig, std::uint64_t num_vertices,
 // values: known, or empty.
 SpanUnits::SharedRecon SpanUnits::recon_of(const SharedRig& rig,
                                            std::span<const std::int32_t> values) const {
-  return values.empty()
-             ? std::make_shared<RigRecon>(mesh_, rig, header_.position_bits, false)
-             : std::make_shared<RigRecon>(mesh_, rig, header_.position_bits, values);
+  return values.empty() ? std::make_shared<RigRecon>(mesh_, rig, header_.position_bits, false)
+                        : std::make_shared<RigRecon>(mesh_, rig, header_.position_bits, values);
 }
 
 EncodedSpan SpanUnits::alone(CodedSpan coded) const {
@@ -92,7 +91,7 @@ void SpanUnits::write_rig(const SharedRig& rig, EncodedSpan& encoded) const {
   add_units(write_shared_rig(rig, kRigIdx, mesh_, header_), UnitType::kRig, encoded);
 }
 
-// GOFs of tracks, complete but for temporal layers.
+// Skinned GOFs with shared rigs, complete but for temporal layers.
 void SpanUnits::write_gofs(const SharedRecon& recon, std::vector<SkinnedGof> gofs,
                            EncodedSpan& encoded) const {
   std::vector<std::shared_ptr<const SkinnedRecon>> recons;
@@ -130,8 +129,7 @@ EncodedSpan SpanUnits::with_kept_rig(
   count(coded.rig, mesh_.num_vertices(), coded.gofs, encoded);
   write_rig(coded.rig, encoded);
   auto kept = std::make_shared<KeptRig>();
-  kept->recon =
-      std::make_shared<const RigRecon>(mesh_, coded.rig, header_.position_bits, true);
+  kept->recon = std::make_shared<const RigRecon>(mesh_, coded.rig, header_.position_bits, true);
   coded.rig.vertex_residual = {};
   coded.rig.counterparts = {};
   kept->rig = std::make_shared<const SharedRig>(std::move(coded.rig));
@@ -143,7 +141,7 @@ EncodedSpan SpanUnits::with_kept_rig(
 }
 
 EncodedSpan SpanUnits::with_earlier_rig(const KeptRig& kept, std::vector<SkinnedGof> gofs,
-                                          std::vector<LocalGroup> local_groups) const {
+                                        std::vector<LocalGroup> local_groups) const {
   for (std::size_t g = 0; g < gofs.size(); ++g) {
     use_rig(kept.rig, gofs[g]);
     add_local_group(std::move(local_groups[g]), gofs[g]);

@@ -23,14 +23,14 @@ class SpanUnits {
 
   // The only GOF of a span, with vertices of its own.
   EncodedSpan alone(CodedSpan coded) const;
-  // A shared rig and GOFs of tracks.
+  // A shared rig and skinned GOFs with shared rigs.
   EncodedSpan with_rig(CodedSpan coded) const;
   // The same; later spans may use the rig. rest: as decoded, 1/16 grid units.
   EncodedSpan with_kept_rig(CodedSpan coded,
-                              const std::array<std::vector<std::int32_t>, 3>& rest) const;
+                            const std::array<std::vector<std::int32_t>, 3>& rest) const;
   // GOFs of tracks of an earlier rig. local_groups [GOF].
   EncodedSpan with_earlier_rig(const KeptRig& kept, std::vector<SkinnedGof> gofs,
-                                 std::vector<LocalGroup> local_groups) const;
+                               std::vector<LocalGroup> local_groups) const;
 
  private:
   using SharedRecon = std::shared_ptr<const RigRecon>;

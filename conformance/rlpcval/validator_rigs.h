@@ -14,7 +14,7 @@ namespace rlpc {
 
 struct SeenRig {
   std::shared_ptr<const SharedRig> rig;  // null: none that could be read
-  bool lost = false;                          // there is, or may be, one that could not be read
+  bool lost = false;                     // there is, or may be, one that could not be read
   bool suspect = false;
   FindingUnit place;
   std::uint64_t bit_pos = 0;  // of the payload of its unit

@@ -92,8 +92,7 @@ Vector<StreamRigs::Alive> StreamRigs::find_alive(std::uint64_t gof_offset) const
   Vector<Alive> alive;
   for (const std::uint64_t offset : alive_at(gof_offset)) {
     const Entry& entry = entries_.at(offset);
-    alive.push_back(
-        {offset, entry.rig_idx, entry.rig ? entry.rig : entry.dropped.lock()});
+    alive.push_back({offset, entry.rig_idx, entry.rig ? entry.rig : entry.dropped.lock()});
   }
   return alive;
 }

@@ -42,7 +42,7 @@ TEST(ValidatorRigs, ReportsAllValuesOfARigHeader) {
   EXPECT_EQ(report.hashed_frames, 10U);
 }
 
-// The elements of a GOF of tracks.
+// The elements of a skinned GOF with a shared rig.
 Bytes tracks(std::uint32_t gof_kind, std::uint32_t rig_idx, std::uint32_t num_local_groups) {
   BitWriter w;
   w.ue(0);

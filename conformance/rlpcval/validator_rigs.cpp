@@ -78,8 +78,7 @@ void StreamValidator::end_rig() {
   rig_.parser.reset();
   findings_.in_unit(rig_.place);
   needed_.max_unit_bytes = std::max<std::uint64_t>(needed_.max_unit_bytes, rig_.unit->size);
-  warn_of_rig(*kept.rig, lead_.context, slots_of(rigs_), kept.bit_pos, findings_,
-                needed_);
+  warn_of_rig(*kept.rig, lead_.context, slots_of(rigs_), kept.bit_pos, findings_, needed_);
 }
 
 void StreamValidator::use_rig(const SkinnedGof& gof) {

@@ -108,7 +108,7 @@ Vector<Influences> complete_influences(const OrderedMesh& mesh, const SharedRig&
 }
 
 RigRecon::RigRecon(const OrderedMesh& mesh, const SharedRig& rig, int position_bits,
-                       bool has_more_groups)
+                   bool has_more_groups)
     : mesh_(mesh), position_bits_(position_bits) {
   const Vector<std::int32_t> rest = recon_rest(rig);
   add_influences(rig, rest);
@@ -121,7 +121,7 @@ RigRecon::RigRecon(const OrderedMesh& mesh, const SharedRig& rig, int position_b
 }
 
 RigRecon::RigRecon(const OrderedMesh& mesh, const SharedRig& rig, int position_bits,
-                       std::span<const std::int32_t> values)
+                   std::span<const std::int32_t> values)
     : mesh_(mesh), position_bits_(position_bits) {
   add_influences(rig, recon_rest(rig));
   auto factors = make_shared_owned<SpatialFactors>(num_vertices());
@@ -196,8 +196,8 @@ void RigRecon::start_weights(const SharedRig& rig, std::span<const std::int32_t>
 }
 
 // Of the component groups from 1 on.
-std::shared_ptr<const SpatialFactors> RigRecon::recon_factors(
-    const SharedRig& rig, AdaptiveWeights* adaptive) const {
+std::shared_ptr<const SpatialFactors> RigRecon::recon_factors(const SharedRig& rig,
+                                                              AdaptiveWeights* adaptive) const {
   auto factors = make_shared_owned<SpatialFactors>(num_vertices());
   const ValuePrediction prediction(mesh_, false, weights_ ? &*weights_ : nullptr);
   for (std::size_t group = 1; group < rig.group_end.size(); ++group) {
@@ -212,7 +212,8 @@ std::shared_ptr<const SpatialFactors> RigRecon::recon_factors(
   return factors;
 }
 
-// 8.16.2 GOF of tracks: the adaptive weights go on from those of the shared rig.
+// 8.16.2 skinned GOF with a shared rig: the adaptive weights go on from those of the shared
+// rig.
 std::shared_ptr<const SpatialFactors> RigRecon::local_factors(const SkinnedGof& gof) const {
   std::optional<AdaptiveWeights> adaptive = adaptive_;
   return recon_factors(gof, adaptive ? &*adaptive : nullptr);

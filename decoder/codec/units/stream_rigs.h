@@ -57,8 +57,8 @@ class StreamRigs {
  private:
   struct Entry {
     std::uint32_t rig_idx = 0;
-    std::uint64_t end = 0;                      // 0: not known
-    std::shared_ptr<const SharedRig> rig;  // null: not parsed, or dropped
+    std::uint64_t end = 0;                   // 0: not known
+    std::shared_ptr<const SharedRig> rig;    // null: not parsed, or dropped
     std::weak_ptr<const SharedRig> dropped;  // while a GOF that is kept uses it
   };
   // In the order of the stream.
@@ -70,9 +70,9 @@ class StreamRigs {
 
   UnitReader& units_;
   AccessUnitReader& access_units_;
-  Map<std::uint64_t, Entry> entries_;                   // by offset
+  Map<std::uint64_t, Entry> entries_;                 // by offset
   std::array<Set<std::uint64_t>, kMaxRigs> offsets_;  // of the entries, by rig_idx
-  Set<std::uint64_t> kept_;                             // those whose rig is there
+  Set<std::uint64_t> kept_;                           // those whose rig is there
   See see_;
   std::function<void()> dropped_;
 };

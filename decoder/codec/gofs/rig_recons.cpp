@@ -21,14 +21,13 @@ std::shared_ptr<RigRecons::Entry> RigRecons::entry_of(
   return entries_.emplace_back(make_shared_owned<Entry>(rig));
 }
 
-std::shared_ptr<const RigRecon> RigRecons::of(
-    const std::shared_ptr<const SharedRig>& rig) {
+std::shared_ptr<const RigRecon> RigRecons::of(const std::shared_ptr<const SharedRig>& rig) {
   erase_unused();
   const std::shared_ptr<Entry> entry = entry_of(rig);
   const std::lock_guard lock(entry->making);
   if (!entry->recon) {
     entry->recon = make_shared_owned<RigRecon>((*context_.meshes)[rig->prediction], *rig,
-                                                 context_.header.position_bits, true);
+                                               context_.header.position_bits, true);
   }
   return entry->recon;
 }

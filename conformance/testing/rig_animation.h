@@ -141,9 +141,8 @@ class RigAnimation : protected SlicedAnimation {
     const SkinnedGofPayloads payloads = write_shared_rig(rig, rig_idx, coded, header_);
     append(out_, UnitType::kRig, payloads.first);
     for (const Bytes& slice : payloads.slices) append(out_, UnitType::kSlice, slice);
-    kept_.at(rig_idx) = {
-        std::make_shared<SharedRig>(rig),
-        std::make_shared<RigRecon>(coded, rig, header_.position_bits, true)};
+    kept_.at(rig_idx) = {std::make_shared<SharedRig>(rig),
+                         std::make_shared<RigRecon>(coded, rig, header_.position_bits, true)};
   }
   void add_tracks(std::uint32_t rig_idx, std::uint32_t num_groups,
                   std::uint32_t num_local_groups) {

@@ -107,9 +107,8 @@ void RigRemainder::write(std::size_t first, std::span<double> rows) const {
       const auto v = static_cast<std::uint32_t>(first + i);
       Point rest;
       for (std::size_t c = 0; c < 3; ++c) rest[c] = kept_.rest[c][v] / kPointScale;
-      write_displacement(frames_, chosen_, v,
-                         motions.of(rig.influences[v], rig.weight_bits), rest,
-                         &rows[i * width()]);
+      write_displacement(frames_, chosen_, v, motions.of(rig.influences[v], rig.weight_bits),
+                         rest, &rows[i * width()]);
     }
   });
   if (negative_.empty()) return;

@@ -361,7 +361,8 @@ TEST(ParseRigRanges, RigsStayWithinTheMemoryOfTheCaller) {
   }
 }
 
-// Those of a GOF of bones; of a GOF of tracks, without and with local component groups.
+// Those of a skinned GOF; of a skinned GOF with a shared rig, without and with local component
+// groups.
 TEST(ParseRigRanges, GofsStayWithinTheMemoryOfTheCaller) {
   const auto rig = rig_of(5, 4);
   rig->bones.resize(1);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Streams whose GOFs share skinned models, by the tools.
+"""Streams whose GOFs share shared rigs, by the tools.
 
-    tools_models_test.py --bin BUILD/bin [unittest arguments, such as Models]
+    tools_rigs_test.py --bin BUILD/bin [unittest arguments, such as Rigs]
 """
 
 import struct
@@ -9,8 +9,8 @@ import struct
 from tools_testing import NAMES, ToolsTest, main
 
 
-class Models(ToolsTest):
-    def test_gofs_of_the_bundled_animations_share_a_model(self):
+class Rigs(ToolsTest):
+    def test_gofs_of_the_bundled_animations_share_a_rig(self):
         for name in NAMES:
             sizes = {}
             for profile in ("main", "high"):
@@ -22,9 +22,9 @@ class Models(ToolsTest):
                 self.ok("rlpcdec", stream, "--verify")
                 sizes[profile] = stream.stat().st_size
             info = self.ok("rlpcinfo", self.path(f"{name}-high.rlpc"), "--json").json()
-            self.assertEqual(len(info["models"]), 1, name)
-            self.assertEqual([gof["model"] for gof in info["gofs"]], [0] * info["num_gofs"])
-            self.assertEqual(info["models"][0]["num_gofs"], info["num_gofs"])
+            self.assertEqual(len(info["rigs"]), 1, name)
+            self.assertEqual([gof["rig"] for gof in info["gofs"]], [0] * info["num_gofs"])
+            self.assertEqual(info["rigs"][0]["num_gofs"], info["num_gofs"])
             self.assertLess(sizes["high"], 0.8 * sizes["main"], name)
 
     def test_the_profile_decides_how_long_gofs_are(self):
@@ -40,30 +40,30 @@ class Models(ToolsTest):
             info = self.ok("rlpcinfo", stream, "--json").json()
             self.assertEqual(info["num_gofs"], num_gofs, profile)
 
-    def test_rlpcinfo_lists_models_with_their_slices(self):
+    def test_rlpcinfo_lists_rigs_with_their_slices(self):
         stream = self.path("a.rlpc")
         self.encode(stream, "--kg", 0.5, "--gof", 20, "--profile", "high")
-        data, at, sizes, of_models, is_model = stream.read_bytes(), 10, [], [], False
+        data, at, sizes, of_rigs, is_rig = stream.read_bytes(), 10, [], [], False
         while at < len(data):
             size = 9 + int.from_bytes(data[at + 1:at + 5], "big")
             if data[at] in (4, 7):
-                is_model = data[at] == 7
+                is_rig = data[at] == 7
             if data[at] in (4, 6, 7):
-                (of_models if is_model else sizes).append(size)
+                (of_rigs if is_rig else sizes).append(size)
             at += size
         info = self.ok("rlpcinfo", stream, "--json").json()
         self.assertEqual([n["bytes"] for g in info["gofs"] for n in (g, *g["slices"])], sizes)
-        self.assertEqual([n["bytes"] for m in info["models"] for n in (m, *m["slices"])],
-                         of_models)
+        self.assertEqual([n["bytes"] for m in info["rigs"] for n in (m, *m["slices"])],
+                         of_rigs)
         self.assertEqual(sum(info["bits"].values()), 8 * info["bytes"])
         said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
-        for words in ("skinned models: 1, with ", "GOFs of tracks: 3, with ",
-                      "skinned model 0, of 3 GOFs: ",
-                      "frames 20 to 39: tracks of skinned model 0 in "):
+        for words in ("shared rigs: 1, with ", "skinned GOFs with shared rigs: 3, with ",
+                      "shared rig 0, of 3 GOFs: ",
+                      "frames 20 to 39: tracks of shared rig 0 in "):
             self.assertIn(words, said)
         page = self.path("a.html")
         self.ok("rlpcinfo", stream, "--html", page)
-        for words in ("Slices of skinned model 0", "without skinned models", "model to here"):
+        for words in ("Slices of shared rig 0", "without shared rigs", "rig to here"):
             self.assertIn(words, page.read_text())
 
     def test_a_cut_in_words(self):
@@ -72,7 +72,7 @@ class Models(ToolsTest):
                     "--component-groups", 6, "--layer-groups", 3)
         said = self.ok("rlpcinfo", stream, "--extract", "components=4", "-o",
                        self.path("cut.rlpc")).out.decode()
-        for words in ("skinned model 0: ", "frames 0 to 19, tracks of skinned model 0: "):
+        for words in ("shared rig 0: ", "frames 0 to 19, tracks of shared rig 0: "):
             self.assertIn(words, said)
         self.ok("rlpcdec", self.path("cut.rlpc"), "--verify")
 

@@ -76,8 +76,7 @@ std::string text_of(const std::optional<Error>& error) {
 }
 
 SkinnedGofPayloads payloads_of_rig(const SplitSkinnedGof& from) {
-  return write_shared_rig(*from.rig, from.rig_idx, from.whole.coded_mesh(),
-                             from.whole.header);
+  return write_shared_rig(*from.rig, from.rig_idx, from.whole.coded_mesh(), from.whole.header);
 }
 SkinnedGofPayloads payloads_of_tracks(const SplitSkinnedGof& from) {
   return write_tracks(from.tracks, from.whole.coded_mesh(), from.whole.header);

@@ -41,7 +41,7 @@ class RigRemainder {
  public:
   // motions: of the bones in the chosen frames. Keeps references to rig, factors and frames.
   RigRemainder(const KeptRig& kept, const RigFactors& factors, const SpanFrames& frames,
-                 std::vector<std::uint32_t> chosen, MotionsOfBones motions)
+               std::vector<std::uint32_t> chosen, MotionsOfBones motions)
       : kept_(kept),
         factors_(factors),
         frames_(frames),

@@ -52,11 +52,11 @@ class RigRecon {
   // The mesh must outlive it; the rig is read only during the call. has_more_groups: whether
   // local_factors() will be called. Cannot fail.
   RigRecon(const OrderedMesh& mesh, const SharedRig& rig, int position_bits,
-             bool has_more_groups);
+           bool has_more_groups);
   // The same where the spatial values of all trajectories are known,
   // [num_vertices][trajectory].
   RigRecon(const OrderedMesh& mesh, const SharedRig& rig, int position_bits,
-             std::span<const std::int32_t> values);
+           std::span<const std::int32_t> values);
   RigRecon(const RigRecon&) = delete;
   RigRecon& operator=(const RigRecon&) = delete;
 
@@ -70,7 +70,7 @@ class RigRecon {
   Run run(std::size_t tile, std::size_t i) const;
   // Spatial factors of the trajectories.
   const std::shared_ptr<const SpatialFactors>& factors() const { return factors_; }
-  // Those of the local component groups of a GOF of tracks.
+  // Those of the local component groups of a skinned GOF with a shared rig.
   std::shared_ptr<const SpatialFactors> local_factors(const SkinnedGof& gof) const;
   // The weights with which local component groups begin; null: they do not adapt.
   const AdaptiveWeights* adaptive_weights() const { return adaptive_ ? &*adaptive_ : nullptr; }
