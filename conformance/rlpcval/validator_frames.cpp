@@ -76,7 +76,7 @@ bool check_frame_pattern(ElementReader& r, FramePattern& pattern) {
 
 }  // namespace
 
-// 6.14 frames_in_gof( )
+// 6.14 frames_of_gof( )
 bool check_frames(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
                   GofHeaderCheck& gof) {
   const Level& level = header.level();

@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-// 6.14 frames_in_gof( ). num_layers: of the mesh; 0 if not known.
+// 6.14 frames_of_gof( ). num_layers: of the mesh; 0 if not known.
 bool check_frames(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
                   GofHeaderCheck& gof);
 

@@ -185,7 +185,7 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
   gof_body(unit, payload, header);
 }
 
-// 6.5 clusters_of_gof( ), 6.11 bones_of_gof( ), 6.13.1 tracks_of_gof( ), 6.14 frames_in_gof( )
+// 6.5 clusters_of_gof( ), 6.11 bones_of_gof( ), 6.13.1 tracks_of_gof( ), 6.14 frames_of_gof( )
 void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
                                const GofHeaderCheck& header) {
   const bool on_grid = header.kind == GofKind::kCluster || lead_.header->positions;

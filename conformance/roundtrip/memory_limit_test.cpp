@@ -94,7 +94,7 @@ TEST(MemoryLimit, HoldsForClusters) {
   const Size many_frames{vertices, 512, 100, 1, 0};
   for (const Size& size : {many_factors, many_frames}) {
     SCOPED_TRACE(size.vertices);
-    expect_within_estimate({1, Kind::kClusters, size, tube(size.vertices)}, 0.4);
+    expect_within_estimate({1, Kind::kCluster, size, tube(size.vertices)}, 0.4);
   }
 }
 
@@ -105,7 +105,7 @@ TEST(MemoryLimit, HoldsForSkinnedGofs) {
                         {vertices, 256, 100, 2, 20},  // tracks of trajectories
                         {kVertices, 4, 65, 20, 20},
                         {kVertices, 4, 129, 20, 20}};
-  for (const Kind kind : {Kind::kBones, Kind::kTracks}) {
+  for (const Kind kind : {Kind::kSkinned, Kind::kSharedRig}) {
     for (const Size& size : sizes) {
       SCOPED_TRACE(size.frames + size.components);
       expect_within_estimate({1, kind, size, tube(size.vertices)}, 0.3);
@@ -121,7 +121,7 @@ TEST(MemoryLimit, HoldsForFrames) {
                         {vertices, 70, 2, 0, 0, 60}};  // frames that can be repeated
   for (const Size& size : sizes) {
     SCOPED_TRACE(size.frames + size.components);
-    expect_within_estimate({1, Kind::kFrames, size, tube(size.vertices)}, 0.3);
+    expect_within_estimate({1, Kind::kInter, size, tube(size.vertices)}, 0.3);
   }
 }
 
@@ -131,13 +131,13 @@ constexpr Size kOfRig{3 * kAround, 1, 10, 50, 10};
 TEST(MemoryLimit, HoldsForSharedRigs) {
   for (const std::uint32_t num_rigs : {1U, 8U}) {
     SCOPED_TRACE(num_rigs);
-    expect_within_estimate({1, Kind::kTracks, kOfRig, tube(kOfRig.vertices), num_rigs, 2}, 0.3);
+    expect_within_estimate({1, Kind::kSharedRig, kOfRig, tube(kOfRig.vertices), num_rigs, 2}, 0.3);
   }
 }
 
 // Rigs that have been replaced are not kept, nor are their reconstructions: one at a time.
 TEST(MemoryLimit, ReplacedRigsTakeNone) {
-  Plan plan{1, Kind::kTracks, {3 * kAround, 1, 64, 10, 2}, tube(3 * kAround), 8, 1};
+  Plan plan{1, Kind::kSharedRig, {3 * kAround, 1, 64, 10, 2}, tube(3 * kAround), 8, 1};
   Memory once{1U << 30, 0};
   EXPECT_FALSE(decode(stream_of(plan), once));
   plan.num_rounds = 2;
@@ -222,7 +222,7 @@ std::vector<Mesh> meshes_of_any_kind() {
 }
 
 TEST(MemoryLimit, HoldsForMeshesOfAnyKind) {
-  for (const Kind kind : {Kind::kClusters, Kind::kBones, Kind::kTracks, Kind::kFrames}) {
+  for (const Kind kind : {Kind::kCluster, Kind::kSkinned, Kind::kSharedRig, Kind::kInter}) {
     SCOPED_TRACE(static_cast<int>(kind));
     for (const Mesh& mesh : meshes_of_any_kind()) {
       expect_within_estimate({1, kind, {mesh.num_vertices, 1, 1, 1, 0}, mesh.triangles});
@@ -232,7 +232,7 @@ TEST(MemoryLimit, HoldsForMeshesOfAnyKind) {
 
 // A coarse mesh that is nearly the whole mesh takes the most.
 TEST(MemoryLimit, HoldsForCoarseMeshes) {
-  for (const Kind kind : {Kind::kClusters, Kind::kTracks}) {
+  for (const Kind kind : {Kind::kCluster, Kind::kSharedRig}) {
     SCOPED_TRACE(static_cast<int>(kind));
     for (const Mesh& mesh : meshes_of_any_kind()) {
       const Plan plan{1, kind, {mesh.num_vertices, 1, 1, 1, 0}, mesh.triangles};

@@ -23,7 +23,7 @@ constexpr std::array<const char*, 4> kKindNames{"cluster", "skinned", "shared-ri
 
 struct Request {
   std::uint32_t level = 0;
-  Kind kind = Kind::kClusters;
+  Kind kind = Kind::kCluster;
   std::string path;
   Size size;
 };

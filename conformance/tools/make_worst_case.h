@@ -21,7 +21,7 @@ namespace rlpc::worst_case {
 
 // A cluster GOF (Baseline); a skinned GOF (Main); a skinned GOF with a shared rig with its
 // shared rig (High); an inter GOF (High).
-enum class Kind : std::uint8_t { kClusters, kBones, kTracks, kFrames };
+enum class Kind : std::uint8_t { kCluster, kSkinned, kSharedRig, kInter };
 
 struct Size {
   std::uint32_t vertices = 0;
@@ -74,7 +74,7 @@ class Noise {
 // num_rounds times: shared rigs, if the kind has them, and a GOF that uses each; or a GOF.
 struct Plan {
   std::uint32_t level = 1;
-  Kind kind = Kind::kClusters;
+  Kind kind = Kind::kCluster;
   Size size;
   std::vector<Triangle> triangles;
   std::uint32_t num_rigs = 1;

@@ -7,12 +7,12 @@ namespace rlpc::worst_case {
 namespace {
 
 std::uint64_t factors_without_components(Kind kind, const Size& size) {
-  if (kind == Kind::kClusters) return 9 * std::uint64_t{size.frames};  // of three seeds
+  if (kind == Kind::kCluster) return 9 * std::uint64_t{size.frames};  // of three seeds
   return 6 * std::uint64_t{size.bones} * size.frames + 3 * std::uint64_t{size.vertices};
 }
 
 std::uint64_t factors_of_component(Kind kind, const Size& size) {
-  if (kind == Kind::kClusters) return 3 * (std::uint64_t{size.vertices} - 3) + size.frames;
+  if (kind == Kind::kCluster) return 3 * (std::uint64_t{size.vertices} - 3) + size.frames;
   return size.vertices + 3 * std::uint64_t{size.frames};
 }
 
@@ -21,7 +21,7 @@ std::optional<Size> largest_size(Kind kind, const Level& level, std::uint32_t fr
                                  std::uint32_t max_components) {
   Size size;
   size.frames = frames;
-  size.bones = kind == Kind::kClusters ? 1 : level.max_clusters;
+  size.bones = kind == Kind::kCluster ? 1 : level.max_clusters;
   const std::uint64_t most =
       std::min<std::uint64_t>(level.max_vertices, level.max_gof_values / frames);
   size.vertices = static_cast<std::uint32_t>(most / kAround * kAround);
@@ -29,7 +29,7 @@ std::optional<Size> largest_size(Kind kind, const Level& level, std::uint32_t fr
   if (size.vertices < 3 * kAround || without > level.max_gof_factors) return std::nullopt;
   size.components = static_cast<std::uint32_t>(std::min<std::uint64_t>(
       max_components, (level.max_gof_factors - without) / factors_of_component(kind, size)));
-  if (kind == Kind::kTracks) {
+  if (kind == Kind::kSharedRig) {
     size.adaptive_factors = static_cast<std::uint32_t>(
         std::min<std::uint64_t>(size.components, level.max_adaptive_values / size.vertices));
   }
@@ -81,13 +81,13 @@ Size hardest_frames(const Level& level, const Most& most) {
 }  // namespace
 
 std::uint64_t num_factors(Kind kind, const Size& size) {
-  if (kind == Kind::kFrames) return 3 * std::uint64_t{size.vertices} * size.repeats;
+  if (kind == Kind::kInter) return 3 * std::uint64_t{size.vertices} * size.repeats;
   return factors_without_components(kind, size) +
          size.components * factors_of_component(kind, size);
 }
 
 Size hardest_size(Kind kind, const Level& level, const Most& most) {
-  if (kind == Kind::kFrames) return hardest_frames(level, most);
+  if (kind == Kind::kInter) return hardest_frames(level, most);
   Size best;
   double highest = 0.0;
   for (std::uint32_t frames = 1; frames <= std::min(most.frames, level.max_gof_frames);

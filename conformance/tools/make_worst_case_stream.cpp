@@ -47,7 +47,7 @@ class StreamMaker {
 
   void gofs(std::span<const Triangle> triangles) {
     const Topology topology = make_topology(header_.num_vertices, triangles);
-    if (plan_.kind == Kind::kClusters) {
+    if (plan_.kind == Kind::kCluster) {
       for (std::uint32_t i = 0; i < plan_.num_rounds; ++i) {
         ClusterGof gof = make_clusters(plan_.size, noise_);
         gof.first_frame = next_frame();
@@ -58,11 +58,11 @@ class StreamMaker {
     const OrderedMeshes meshes(topology, triangles, header_.profile_idc >= kProfileHigh);
     const OrderedMesh& mesh = meshes[Prediction::kLayers];
     for (std::uint32_t i = 0; i < plan_.num_rounds; ++i) {
-      if (plan_.kind == Kind::kBones) {
+      if (plan_.kind == Kind::kSkinned) {
         SkinnedGof gof = make_bones(plan_.size, mesh, noise_);
         gof.first_frame = next_frame();
         units(UnitType::kGof, write_skinned_gof(gof, mesh, header_));
-      } else if (plan_.kind == Kind::kTracks) {
+      } else if (plan_.kind == Kind::kSharedRig) {
         rigs_and_tracks(mesh);
       } else {
         frames(mesh);

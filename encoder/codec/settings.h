@@ -91,7 +91,7 @@ struct MainTools {
 
 // Kinds of GOF that the encoder chooses from. kAuto: all that profile and settings allow, the
 // cheapest for each GOF.
-enum class KindChoice : std::uint8_t { kAuto, kClusters, kBones, kFrames };
+enum class KindChoice : std::uint8_t { kAuto, kCluster, kSkinned, kInter };
 
 // Weights with which a vertex of an inter GOF is predicted from others: learned from the
 // frames before; those of 8.11, from the first frame; or equal ones for its ring, as in
@@ -156,7 +156,7 @@ struct EncoderSettings {
   std::uint32_t components = 0;
   BaselineTools baseline;  // must be left at its defaults unless profile is kBaseline
   MainTools main;          // must be left at its defaults if profile is kBaseline
-  // kBones: Main and High profile; kFrames: High profile, main left at its defaults.
+  // kSkinned: Main and High profile; kInter: High profile, main left at its defaults.
   KindChoice kinds = KindChoice::kAuto;
   // FrameEncoder only: codes and passes on each frame when it is added. High profile, all GOFs
   // are of frames that are predicted from the one before; the target is a KG error, a maximum

@@ -11,10 +11,10 @@ namespace rlpc {
 
 // 7.5: gof_kind
 enum class GofKind : std::uint8_t {
-  kClusters,  // 6.5: clusters in local coordinate frames
-  kSkinned,   // 6.11: bones, and trajectories for the residual
-  kTracks,    // 6.13.1: the same, with the vertices of a shared rig
-  kFrames,    // 6.14: frames predicted from frames
+  kCluster,    // 6.5: clusters in local coordinate frames
+  kSkinned,    // 6.11: bones, and trajectories for the residual
+  kSharedRig,  // 6.13.1: the same, with the vertices of a shared rig
+  kInter,      // 6.14: frames predicted from frames
 };
 
 // The name of a kind, for messages: "a cluster GOF".

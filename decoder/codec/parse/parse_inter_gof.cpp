@@ -24,7 +24,7 @@ bool InterGofParser::has_memory(BitReader& r, std::uint64_t more, const char* st
   return false;
 }
 
-// 6.14 frames_in_gof( ), the settings of its weights
+// 6.14 frames_of_gof( ), the settings of its weights
 void InterGofParser::weights(BitReader& r) {
   gof_.weights.damping_log2 = static_cast<int>(r.u(4, "damping_log2"));
   gof_.weights.outer_weight = static_cast<int>(r.u(4, "outer_weight"));
@@ -40,7 +40,7 @@ void InterGofParser::weights(BitReader& r) {
   gof_.prime_log2 = static_cast<int>(r.u(4, "prime_log2"));
 }
 
-// 6.14 frames_in_gof( )
+// 6.14 frames_of_gof( )
 Result<bool> InterGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   const std::uint64_t at = r.bit_pos();
   static_cast<GofHeader&>(gof_) = gof_header;
@@ -68,7 +68,7 @@ Result<bool> InterGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   if (gof_.num_patches == 0) r.expect_end();
   if (r.error()) return *r.error();
   memory_bytes_ = memory_of_frames(header_.num_vertices, gof_.num_frames, gof_);
-  if (!has_memory(r, 0, "frames_in_gof", at)) return *r.error();
+  if (!has_memory(r, 0, "frames_of_gof", at)) return *r.error();
   if (gof_.num_patches > 0) patch_map(r);
   if (r.error()) return *r.error();
   frames_.resize(gof_.num_frames);

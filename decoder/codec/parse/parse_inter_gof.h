@@ -40,7 +40,7 @@ class InterGofParser {
                  const MemoryLimit& memory, const SliceCut& cut = {})
       : header_(header), mesh_(mesh), memory_(memory), cut_(cut) {}
 
-  // 6.14 frames_in_gof( ): the rest of the payload of a GOF unit, to which `r` ends.
+  // 6.14 frames_of_gof( ): the rest of the payload of a GOF unit, to which `r` ends.
   Result<bool> gof(BitReader& r, const GofHeader& gof_header);
   // 6.14.2 frame_unit( ). unit_bit_pos: of the unit.
   Result<bool> frame(BitReader& r, std::uint64_t unit_bit_pos);

@@ -18,7 +18,7 @@
 
 namespace rlpc {
 
-// 6.14 frames_in_gof( ): the payload of the GOF unit. Settings must be legal.
+// 6.14 frames_of_gof( ): the payload of the GOF unit. Settings must be legal.
 std::vector<std::uint8_t> write_inter_gof_unit(const GofHeader& gof,
                                                const InterSettings& settings,
                                                const Topology& topology);

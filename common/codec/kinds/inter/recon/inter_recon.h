@@ -1,4 +1,4 @@
-// 8.19 inter GOF: the positions of one frame after the other, in coding order. The decoder
+// 8.19 Inter GOF: the positions of one frame after the other, in coding order. The decoder
 // gives it the residuals of a frame; the encoder chooses them layer by layer.
 #pragma once
 

@@ -212,7 +212,7 @@ std::shared_ptr<const SpatialFactors> RigRecon::recon_factors(const SharedRig& r
   return factors;
 }
 
-// 8.16.2 skinned GOF with a shared rig: the adaptive weights go on from those of the shared
+// 8.16.2 Skinned GOF with a shared rig: the adaptive weights go on from those of the shared
 // rig.
 std::shared_ptr<const SpatialFactors> RigRecon::local_factors(const SkinnedGof& gof) const {
   std::optional<AdaptiveWeights> adaptive = adaptive_;
