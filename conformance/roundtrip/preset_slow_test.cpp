@@ -50,11 +50,11 @@ std::size_t bytes_of(std::uint32_t modes, const EncoderSettings& settings) {
   return encode_to_memory(source, settings).size();
 }
 
-class EachProfile : public testing::TestWithParam<Profile> {};
-INSTANTIATE_TEST_SUITE_P(PresetSlow, EachProfile,
+class PresetSlow : public testing::TestWithParam<Profile> {};
+INSTANTIATE_TEST_SUITE_P(EachProfile, PresetSlow,
                          testing::Values(Profile::kMain, Profile::kHigh));
 
-TEST_P(EachProfile, KeepsTheSmallestOfItsSearches) {
+TEST_P(PresetSlow, KeepsTheSmallestOfItsSearches) {
   for (const std::uint32_t modes : {2U, 6U, 7U, 8U}) {
     SCOPED_TRACE(testing::Message() << modes << " modes");
     EncoderSettings settings;
@@ -72,7 +72,7 @@ TEST_P(EachProfile, KeepsTheSmallestOfItsSearches) {
 }
 
 // The searches have threads of their own, of which none must be left to the caller.
-TEST_P(EachProfile, LeavesNoThreadsBehind) {
+TEST_P(PresetSlow, LeavesNoThreadsBehind) {
   for (const std::uint32_t modes : {2U, 6U, 7U, 8U}) {
     EncoderSettings settings;
     settings.profile = GetParam();

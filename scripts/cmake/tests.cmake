@@ -44,8 +44,15 @@ function(rlpc_test name)
                        PROPERTIES LABELS unit)
 endfunction()
 
-# rlpc_tests(FOLDER... LIBS lib... [EXCEPT name...]): the binaries of all tests in folders, named
-# after their files.
+# rlpc_reads_project(SOURCE...): these know the folder of the project, as RLPC_SOURCE_DIR.
+function(rlpc_reads_project)
+  set_source_files_properties(${ARGN} PROPERTIES
+    COMPILE_DEFINITIONS "RLPC_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"")
+endfunction()
+
+# rlpc_tests(FOLDER... LIBS lib... [EXCEPT name...]): a binary for each folder with all tests in it,
+# without the files named; common/codec/mesh has common_codec_mesh_test. One for each file would
+# take longer to link than to compile.
 function(rlpc_tests)
   cmake_parse_arguments(PARSE_ARGV 0 ARG "" "" "LIBS;EXCEPT")
   foreach(folder IN LISTS ARG_UNPARSED_ARGUMENTS)
@@ -53,12 +60,16 @@ function(rlpc_tests)
     if(NOT tests)
       message(FATAL_ERROR "no tests in ${CMAKE_CURRENT_SOURCE_DIR}/${folder}")
     endif()
-    foreach(test IN LISTS tests)
-      get_filename_component(name ${test} NAME_WE)
-      if(NOT name IN_LIST ARG_EXCEPT)
-        rlpc_test(${name} ${test} LIBS ${ARG_LIBS})
-      endif()
+    foreach(name IN LISTS ARG_EXCEPT)
+      list(FILTER tests EXCLUDE REGEX "/${name}.cpp$")
     endforeach()
+    if(tests)
+      cmake_path(ABSOLUTE_PATH folder NORMALIZE OUTPUT_VARIABLE path)
+      cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
+      string(REGEX REPLACE "/$" "" path ${path})
+      string(REPLACE "/" "_" name ${path})
+      rlpc_test(${name}_test ${tests} LIBS ${ARG_LIBS})
+    endif()
   endforeach()
 endfunction()
 

@@ -90,7 +90,7 @@ std::vector<Positions> decoded_in_order(const Bytes& bytes) {
 std::vector<fs::path> accepted_streams() {
   std::vector<fs::path> paths;
   for (const char* version : {"v1.0", "v1.1", "v1.2"}) {
-    const fs::path folder = fs::path(RLPC_STREAMS) / version / "accept";
+    const fs::path folder = fs::path(RLPC_SOURCE_DIR) / "streams" / version / "accept";
     if (!fs::exists(folder)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
       if (entry.path().extension() == ".rlpc" && entry.file_size() < 20000) {
@@ -170,7 +170,7 @@ TEST(SeekingDecoder, DecodesAttributesBetweenFramesWhileTheStreamIsBeingLoaded) 
 
 TEST(SeekingDecoder, ReadsAnAssetWhileTheStreamIsBeingLoaded) {
   const Bytes bytes =
-      contents(fs::path(RLPC_STREAMS) / "v1.2" / "accept" / "AST" / "AST-0001a.rlpc");
+      contents(fs::path(RLPC_SOURCE_DIR) / "streams" / "v1.2" / "accept" / "AST" / "AST-0001a.rlpc");
   Loaded loaded{bytes, {}, 0, 0};
   SeekingDecoder decoder([&] { return std::make_unique<LoadedSource>(loaded); }, {});
   ASSERT_TRUE(completed(loaded, decoder, [&] { return decoder.open(); }));
@@ -182,7 +182,7 @@ TEST(SeekingDecoder, ReadsAnAssetWhileTheStreamIsBeingLoaded) {
 }
 
 TEST(SeekingDecoder, FramesAreDecodedAfterAnErrorOfAttributes) {
-  const fs::path folder = fs::path(RLPC_STREAMS) / "v1.2" / "either";
+  const fs::path folder = fs::path(RLPC_SOURCE_DIR) / "streams" / "v1.2" / "either";
   std::size_t num_errors = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.path().extension() != ".rlpc") continue;
@@ -204,7 +204,7 @@ TEST(SeekingDecoder, FramesAreDecodedAfterAnErrorOfAttributes) {
 
 TEST(SeekingDecoder, OfAnotherFrameLoadsNoMoreThanItsGof) {
   const Bytes bytes =
-      contents(fs::path(RLPC_STREAMS) / "v1.0" / "accept" / "IDX" / "IDX-0001a.rlpc");
+      contents(fs::path(RLPC_SOURCE_DIR) / "streams" / "v1.0" / "accept" / "IDX" / "IDX-0001a.rlpc");
   Loaded loaded{bytes, {}, 0, 0};
   const auto frames = decoded_in_order(bytes);
   ASSERT_GT(frames.size(), 1U);
@@ -218,7 +218,7 @@ TEST(SeekingDecoder, OfAnotherFrameLoadsNoMoreThanItsGof) {
 
 TEST(SeekingDecoder, CountsTheFramesOfAStreamThatWasCutOff) {
   const Bytes whole =
-      contents(fs::path(RLPC_STREAMS) / "v1.2" / "accept" / "FRM" / "FRM-0030a.rlpc");
+      contents(fs::path(RLPC_SOURCE_DIR) / "streams" / "v1.2" / "accept" / "FRM" / "FRM-0030a.rlpc");
   const auto count = [&](std::size_t size) {
     const Bytes bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
     SeekingDecoder decoder([&] { return memory_source(bytes); }, {});
@@ -230,7 +230,7 @@ TEST(SeekingDecoder, CountsTheFramesOfAStreamThatWasCutOff) {
 }
 
 TEST(SeekingDecoder, DeliversAFrameThatDoesNotMatchItsHash) {
-  const fs::path folder = fs::path(RLPC_STREAMS) / "v1.0";
+  const fs::path folder = fs::path(RLPC_SOURCE_DIR) / "streams" / "v1.0";
   Loaded loaded{contents(folder / "reject" / "HSH" / "HSH-0001x1.rlpc"), {}, 0, 0};
   const auto right = decoded_in_order(contents(folder / "accept" / "HSH" / "HSH-0001a.rlpc"));
   SeekingDecoder decoder([&] { return std::make_unique<LoadedSource>(loaded); }, {});
