@@ -4,6 +4,7 @@
 Citations    "// 8.4.2 Title", "clause 8.4.2", "Annex B" and "Table 9-1" in comments of C++ code
              exist in spec/; a title after a number at the start of a comment is that of the
              heading, or names a function of that clause, as in "// 6.3.1 sequence_header( )".
+Parsers      each parse_*( ) of the headers of decoder/codec/parse/ cites its clause.
 Rules        every rule id in C++ code or pseudo-code, like R-HDR-03, is defined once in spec/,
              as {R-HDR-03}.
 Elements     every syntax element of the `rlpc` blocks (name = u(1), name = ue(), name = ae(...))
@@ -32,6 +33,9 @@ _ELEMENT = re.compile(
     r"\s*(?:\w+\.)*([a-z]\w*)\s*(?:\[[^=]*\]\s*)?=\s*(?:u|ue|se|ae|ae_\w+|bypass)\s*\(")
 _FUNCTION = re.compile(r"def (\w+)")
 _READ = re.compile(r'\.\s*(?:u|ue|se|flag)\(\s*(?:[^",()]*,\s*)?"(\w+)"')
+
+# A free function that parses: its line begins with the type.
+_PARSER = re.compile(r"^(?:inline )?[A-Z_a-z][\w:<>,& ]*? (parse_\w+)\(")
 
 _CITED_START = re.compile(rf"({_DOTTED})(?![\w.]*\d)(.*)", re.DOTALL)
 _CITED_CLAUSE = re.compile(
@@ -192,6 +196,26 @@ def check_elements(spec, parsers):
                            f"{match.group(1)} is in no syntax table")
 
 
+def uncited(root, spec):
+    """Declarations of parsers without a clause, in the comment above them or that of the file."""
+    for path in sorted((root / PARSERS[0]).rglob("*.h")):
+        if cpp_source.is_test(path):
+            continue
+        lines = path.read_text(encoding="utf-8").splitlines()
+        opening = " ".join(lines[:next((i for i, l in enumerate(lines) if not l.startswith("//")), 0)])
+        for index, line in enumerate(lines):
+            match = _PARSER.match(line)
+            if not match:
+                continue
+            above = index
+            while above > 0 and lines[above - 1].lstrip().startswith("//"):
+                above -= 1
+            cited = re.findall(_DOTTED, opening + " " + " ".join(lines[above:index]))
+            if not any(number in spec.clauses for number in cited):
+                yield (f"{path.relative_to(root)}:{index + 1}: {match.group(1)}( ) cites no clause, "
+                       "nor does its file")
+
+
 def check(root):
     spec = Spec(root)
     if not spec.files:
@@ -218,6 +242,7 @@ def check(root):
     complaints += [f"{place} has no sources" for place in PARSERS
                    if not any(name.startswith(place) for name in parsers)]
     complaints += check_elements(spec, parsers)
+    complaints += uncited(root, spec)
     summary = (f"{len(spec.clauses)} clauses, {len(spec.elements)} syntax elements, "
                f"{len(spec.rules)} rules of which {len(used & set(spec.rules))} in code")
     return complaints, summary

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """The layer rules: which folder may include, import and link which.
 
-Each folder includes what scripts/checks/rooms.py allows: common neither side, encoder and decoder
-never each other, parsing nothing that reconstructs, readers and writers of mesh files nothing of
-coding. Eigen stays in the encoder and the writer of glTF; common and decoder neither throw nor catch; the specification
-interpreter and the judge are plain Python.
+Each folder includes what scripts/checks/rooms.py allows, and no two include each other, over
+however many others: common neither side, encoder and decoder never each other, parsing nothing that
+reconstructs, readers and writers of mesh files nothing of coding. Eigen stays in the encoder and the
+writer of glTF; common and decoder neither throw nor catch; the specification interpreter and the
+judge are plain Python.
 """
 
 import ast
@@ -21,10 +22,7 @@ LAYERS = ("common", "decoder", "encoder", "conformance")
 # names.
 INPUT_OUTPUT = {"cstdio", "filesystem", "fstream", "iomanip", "ios", "iostream", "istream",
                 "ostream", "streambuf", "syncstream"}
-PUBLIC_HEADERS = ("common/c_api/rlpc_clip.h", "common/c_api/rlpc_status.h",
-                  "decoder/c_api/rlpc_frame_output.h", "decoder/c_api/rlpc_pose.h",
-                  "decoder/c_api/rlpc_decode.h", "decoder/rlpc_decoder.h", "encoder/frame_encoder.h",
-                  "encoder/c_api/rlpc_encode.h", "encoder/rlpc_encoder.h")
+INSTALLED = "scripts/cmake/install.cmake"  # names the public headers
 # Headers of the standard library that our C headers include.
 C_HEADERS = {"stddef.h", "stdint.h"}
 # Folder: other folders whose modules it may import.
@@ -33,6 +31,12 @@ PLAIN_PYTHON = {"conformance/specdec": (), "conformance/judge": ("conformance/sp
 # A free function of a header: its line begins with the type, not with white space.
 _DECLARATION = re.compile(r"^[A-Za-z][\w:<>,&*\[\] ]*?[ &*](\w+)\(", re.MULTILINE)
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include\b[ \t]*(.*)$", re.MULTILINE)
+
+
+def public_headers(root):
+    """What scripts/cmake/install.cmake installs."""
+    text = (root / INSTALLED).read_text(encoding="utf-8")
+    return sorted(set(re.findall(r"\b(?:common|decoder|encoder)/[\w/]+\.h\b", text)))
 
 
 @functools.lru_cache(maxsize=None)
@@ -68,7 +72,7 @@ def check_library(layer, relative, included):
     if layer == "common" and not cpp_source.is_test(relative):
         if included in INPUT_OUTPUT:
             return f"common/ does no input or output (it includes <{included}>)"
-        is_c = relative.as_posix() in PUBLIC_HEADERS and included in C_HEADERS
+        is_c = relative.parent.name == "c_api" and included in C_HEADERS
         if included.endswith(".h") and not is_c:
             return f"common/ uses only the standard library (it includes <{included}>)"
     return None
@@ -192,6 +196,40 @@ def check_rooms(root, paths):
         yield f"scripts/checks/rooms.py: {folder}/ has no sources"
 
 
+def find_cycle(graph):
+    """A list of folders of which each includes the next, and the last the first; none: []."""
+    done = set()
+    for start in sorted(graph):
+        way, tries = [start], [iter(sorted(graph.get(start, ())))]
+        while way:
+            target = next(tries[-1], None)
+            if target in way:
+                return way[way.index(target):]
+            if target is None:
+                done.add(way.pop())
+                tries.pop()
+            elif target not in done:
+                way.append(target)
+                tries.append(iter(sorted(graph.get(target, ()))))
+    return []
+
+
+def check_cycles(root, paths):
+    """No folder includes what includes it, over however many folders, tests aside."""
+    graph = {}
+    for path in paths:
+        folder = path.parent.relative_to(root).as_posix()
+        if cpp_source.is_test(path) or rooms.layer_of(folder) == rooms.BOTH_SIDES:
+            continue
+        text = path.read_text(encoding="utf-8")
+        targets = {included.rpartition("/")[0] for _, bracket, included in includes(text)
+                   if bracket == '"' and rooms.allowed(folder, included, False)}
+        graph.setdefault(folder, set()).update(targets - {folder})
+    cycle = find_cycle(graph)
+    if cycle:
+        yield "folders include each other in a circle: " + " -> ".join([*cycle, cycle[0]])
+
+
 def check(root):
     paths = cpp_source.files(root, cpp_source.LAYERS)
     complaints = list(check_rooms(root, paths))
@@ -201,10 +239,14 @@ def check(root):
     complaints += [c for path in known for c in check_exceptions(root, path)]
     for folder, places in rooms.NOT_CALLED.items():
         complaints += check_calls(root, folder, places)
-    for header in PUBLIC_HEADERS:
+    headers = public_headers(root)
+    if not headers:
+        complaints.append(f"{INSTALLED}: names no public header")
+    for header in headers:
         if not (root / header).is_file():
             complaints.append(f"{header}: this public header does not exist")
         complaints += check_public_header(root, header)
+    complaints += check_cycles(root, known)
     complaints += check_links(root)
     for folder, others in PLAIN_PYTHON.items():
         complaints += check_python(root, folder, others)

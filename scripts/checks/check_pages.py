@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Files and relative links named in pages (*.md) exist.
+"""Files, relative links and functions named in pages (*.md) exist.
 
 A name is checked if it begins with one of the project's folders. It may be a glob; `X` stands
 for a version that does not exist yet (streams/vX.Y). Tables that scripts write are between marks.
@@ -12,6 +12,8 @@ import cpp_source
 
 _FOLDERS = ("common", "conformance", "decoder", "encoder", "scripts", "spec", "streams")
 _NAME = re.compile(rf"(?<![\w/.%-])((?:{'|'.join(_FOLDERS)})/[\w./*-]*)")
+# A function of ours, in CONTRIBUTING.md: `make_recon()`, `Decoder::pose()`.
+_FUNCTION = re.compile(r"`(?:\w+::)*(\w+)\(\)`")
 _LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 
 # Page: tables in it that a script writes between `<!-- begin: NAME ... -->` and `<!-- end: NAME -->`.
@@ -35,6 +37,22 @@ def missing(root, path):
                 yield number, match.group(1)
 
 
+def without_code(root):
+    """(line, name) of functions that CONTRIBUTING.md names, and no source declares."""
+    path = root / "CONTRIBUTING.md"
+    if not path.is_file():
+        return
+    sources = [p for layer in cpp_source.LAYERS for p in (root / layer).rglob("*")
+               if p.suffix in (".h", ".cpp", ".c", ".py", ".js")]
+    known = set()
+    for source in sources:
+        known |= set(re.findall(r"\b(\w+)\(", source.read_text(encoding="utf-8")))
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        for name in _FUNCTION.findall(line):
+            if name not in known:
+                yield number, name
+
+
 def unmarked(root):
     """(page, name) of tables whose marks are missing or repeated."""
     for page, names in _WRITTEN.items():
@@ -49,6 +67,8 @@ def check(root):
     found = list(pages(root))
     complaints = [f"{path.relative_to(root)}:{line}: there is no {name}"
                   for path in found for line, name in missing(root, path)]
+    complaints += [f"CONTRIBUTING.md:{line}: no source has {name}( )"
+                   for line, name in without_code(root)]
     complaints += [f"{page}: no marks `begin: {name}`, `end: {name}`, once each"
                    for page, name in unmarked(root)]
     return complaints, f"{len(found)} pages name only existing files"

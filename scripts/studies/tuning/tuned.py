@@ -14,9 +14,9 @@ time says `fixed:` instead: limits of the format, memory, tolerances of rounding
 import dataclasses
 import re
 
-# Sources of the search: those of each kind of GOF (encoder/*_gof) among them. What is found by
+# Sources of the search: those of each kind of GOF (encoder/codec/kinds) among them. What is found by
 # trial elsewhere is marked likewise.
-_SEARCH = re.compile(r"encoder/(?:gof|sequence|\w+_gof)/")
+_SEARCH = re.compile(r"encoder/codec/(?:spans|sequence|kinds)/")
 
 _DECLARATION = re.compile(
     r"^(?P<indent>[ ]*)(?P<storage>(?:(?:static|inline)[ ]+)*)constexpr[ ]+"
