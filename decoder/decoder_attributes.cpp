@@ -27,7 +27,7 @@ Result<Vector<std::int32_t>> Decoder::Impl::decode_first_frame() {
   }
   auto access_unit = stream_.read(**unit);
   if (!access_unit) return access_unit.error();
-  make_recon(*access_unit, stream_.context(), models_)->frame(0, positions);
+  make_recon(*access_unit, stream_.context(), rigs_)->frame(0, positions);
   return positions;
 }
 
