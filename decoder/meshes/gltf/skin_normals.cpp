@@ -277,8 +277,7 @@ class SkinNormalMaker {
     apart_.resize(vertex_.size());
     std::vector<std::uint32_t> frames = best_;
     std::ranges::sort(frames);
-    const auto rest_of = std::ranges::unique(frames);
-    frames.erase(rest_of.begin(), rest_of.end());
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
     for (const std::uint32_t f : frames) {
       const JointFrame joints(influences_, maps_[f]);
       const std::vector<float> whole = look_.normals(frames_[f]);

@@ -228,6 +228,10 @@ class RandomTimes : public GltfTimeTest {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
   int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
+  template <class T>
+  T any(const std::vector<T>& values) {
+    return values[std::uniform_int_distribution<std::size_t>(0, values.size() - 1)(random_)];
+  }
 
   std::vector<float> times(double rate) {
     const int count = 1 + below(30);
@@ -259,7 +263,7 @@ class RandomTimes : public GltfTimeTest {
 
   Track track(double rate) {
     Track made;
-    made.interpolation = std::vector<std::string>{"LINEAR", "STEP", "CUBICSPLINE"}[below(3)];
+    made.interpolation = any<std::string>({"LINEAR", "STEP", "CUBICSPLINE"});
     made.times = times(rate);
     for (std::size_t k = 0; k < made.times.size(); ++k) {
       made.values.push_back(static_cast<float>(real(-5, 5)));
@@ -312,8 +316,8 @@ void RandomTimes::check(const std::vector<Animation>& animations,
       ++num_exact_;
     }
     for (int j = 0; j < 12; ++j) {
-      const auto any = static_cast<std::uint32_t>(below(static_cast<int>(clip.num_frames)));
-      const std::uint32_t f = j == 0 ? 0 : j == 1 ? clip.num_frames - 1 : any;
+      const auto middle = static_cast<std::uint32_t>(below(static_cast<int>(clip.num_frames)));
+      const std::uint32_t f = j == 0 ? 0 : j == 1 ? clip.num_frames - 1 : middle;
       const std::vector<float> xyz = frame_of(*source, clip.first_frame + f);
       const bool is_last = f + 1 == clip.num_frames;
       const double time = is_last ? std::max(end, f / rate) : f / rate;
@@ -329,10 +333,10 @@ TEST_F(RandomTimes, ComeOutAsTheyWentIn) {
   const std::vector<double> rates{30, 24, 25, 60, 30000 / 1001.0, 12, 15, 50, 120};
   for (int i = 0; i < 400 && !HasFailure(); ++i) {
     SCOPED_TRACE(i);
-    const double rate = rates[below(static_cast<int>(rates.size()))];
+    const double rate = any(rates);
     std::vector<Animation> animations;
     for (int k = below(3); k >= 0; --k) {
-      const double its_rate = below(4) == 0 ? rates[below(9)] : rate;
+      const double its_rate = below(4) == 0 ? any(rates) : rate;
       animations.push_back({track(its_rate), track(its_rate)});
     }
     std::optional<FrameRate> wanted;

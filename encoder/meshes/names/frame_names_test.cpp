@@ -192,7 +192,8 @@ TEST(FrameNames, ThatPatternsLeaveOutAreToldInRandomSchemes) {
       static const std::vector<const char*> kFormats{"%d",    "%+d",  "%04d",
                                                      "%+04d", "%05d", "%d.0"};
       char text[16];
-      const std::size_t odd = below(random, 8) == 0 ? below(random, kFormats.size()) : i % 5;
+      const std::size_t odd = below(random, 8) == 0 ? below(random, kFormats.size())
+                                                    : static_cast<std::size_t>(i % 5);
       std::snprintf(text, sizeof text, kFormats[odd], number);
       names.push_back("f_" + std::string(text) + ".obj");
     }
