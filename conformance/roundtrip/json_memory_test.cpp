@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "common/files/glb.h"
 #include "common/json/json.h"
 #include "common/testing/random_json.h"
 #include "conformance/testing/count_memory.h"
@@ -73,12 +74,7 @@ TEST(JsonMemory, OfAnAssetIsKnownBeforeItIsRead) {
   std::string text = R"({"asset":{"version":"2.0"},"materials":[)";
   for (int i = 0; i < 300000; ++i) text += "[],";
   text += "0]}";
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  std::string glb = "glTF";
-  for (const std::size_t number : {std::size_t{2}, 20 + text.size(), text.size()}) {
-    for (int i = 0; i < 4; ++i) glb += static_cast<char>(number >> (8 * i) & 0xFF);
-  }
-  glb += "JSON" + text;
+  const std::string glb = glb_head(text, 0);
   const std::uint64_t estimate = asset_memory_bytes(glb);
   EXPECT_GT(estimate, 20'000'000U);
   const std::size_t before = memory_count.now;

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/files/binary_numbers.h"
+#include "common/files/glb.h"
 #include "decoder/meshes/mesh_bytes.h"
 
 namespace rlpc {
@@ -10,16 +10,9 @@ namespace {
 
 const std::string kPng = "\x89PNG the picture";
 
-std::string glb_of(std::string json, std::string binary) {
-  json.resize((json.size() + 3) / 4 * 4, ' ');
+std::string glb_of(const std::string& json, std::string binary) {
   binary.resize((binary.size() + 3) / 4 * 4);
-  std::string glb = "glTF";
-  append_u32(glb, 2);
-  append_u32(glb, static_cast<std::uint32_t>(28 + json.size() + binary.size()));
-  append_u32(glb, static_cast<std::uint32_t>(json.size()));
-  glb += "JSON" + json;
-  append_u32(glb, static_cast<std::uint32_t>(binary.size()));
-  return glb + std::string("BIN\0", 4) + binary;
+  return glb_head(json, binary.size()) + binary;
 }
 
 std::string with_views(const std::string& members, const std::string& views) {

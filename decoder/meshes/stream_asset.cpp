@@ -4,34 +4,13 @@
 #include <set>
 #include <utility>
 
-#include "common/files/binary_numbers.h"
+#include "common/files/glb.h"
 #include "common/files/messages.h"
 #include "common/json/json.h"
 #include "decoder/meshes/asset_repair.h"
 
 namespace rlpc {
 namespace {
-
-constexpr std::size_t kHeaderBytes = 12;
-constexpr std::size_t kChunkBytes = 8;
-
-struct Chunks {
-  std::string_view json;
-  std::string_view binary;
-};
-
-std::optional<Chunks> chunks_of(std::string_view glb) {
-  if (!glb.starts_with("glTF") || glb.size() < kHeaderBytes + kChunkBytes) return std::nullopt;
-  Chunks chunks;
-  for (std::size_t at = kHeaderBytes; at + kChunkBytes <= glb.size();) {
-    const std::uint64_t size = load_u32(glb, at);
-    if (size > glb.size() - at - kChunkBytes) return std::nullopt;
-    const std::string_view kind = glb.substr(at + 4, 4);
-    (kind == "JSON" ? chunks.json : chunks.binary) = glb.substr(at + kChunkBytes, size);
-    at += kChunkBytes + size;
-  }
-  return chunks;
-}
 
 std::uint64_t number_in(const GltfJson& object, const char* key) {
   const bool is_number =
@@ -44,26 +23,26 @@ std::uint64_t number_in(const GltfJson& object, const char* key) {
 std::uint64_t asset_memory_bytes(std::string_view glb) {
   constexpr std::uint64_t kTrees = 2;   // one that is read, one that is written
   constexpr std::uint64_t kCopies = 5;  // of images: on their way to files
-  const auto chunks = chunks_of(glb);
+  const auto view = view_glb(glb);
   JsonShape shape;
-  if (!chunks || measure_json(chunks->json, shape)) return kCopies * glb.size();
-  return kTrees * json_tree_bytes(shape, chunks->json.size()) + kCopies * glb.size();
+  if (!view || measure_json(view->json, shape)) return kCopies * glb.size();
+  return kTrees * json_tree_bytes(shape, view->json.size()) + kCopies * glb.size();
 }
 
 StreamAsset::StreamAsset(const std::string& glb) {
   if (glb.empty()) return;
   problem_ = "the stream's materials are not a GLB; they are left out";
-  const auto chunks = chunks_of(glb);
-  if (!chunks) return;
+  const auto view = view_glb(glb);
+  if (!view) return;
   JsonProblem problem;
-  auto root = read_json<GltfJson>(chunks->json, UINT64_MAX, problem);
+  auto root = read_json<GltfJson>(view->json, UINT64_MAX, problem);
   if (!root) {
     problem_ =
         "the stream's materials are left out, as their JSON cannot be read: " + problem.message;
     return;
   }
   root_ = *std::move(root);
-  binary_ = chunks->binary;
+  binary_ = view->binary;
   const bool good = is_good();
   if (good) problem_ = "images of the stream's materials overlap; they are left out";
   if (!good || !images_fit()) {

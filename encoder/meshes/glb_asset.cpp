@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "common/files/binary_numbers.h"
+#include "common/files/glb.h"
 #include "common/json/json.h"
 
 namespace rlpc {
@@ -23,24 +23,8 @@ std::string GlbAsset::glb(Json asset) {
     root["buffers"] = {{{"byteLength", binary_.size()}}};
   }
   root["asset"] = std::move(asset);
-  std::string text = json_text(root);
-  text.resize((text.size() + 3) / 4 * 4, ' ');
   binary_.resize((binary_.size() + 3) / 4 * 4);
-  const std::size_t size = 12 + 8 + text.size() + (binary_.empty() ? 0 : 8 + binary_.size());
-  std::string file;
-  file.reserve(size);
-  file += "glTF";
-  append_u32(file, 2);
-  append_u32(file, static_cast<std::uint32_t>(size));
-  append_u32(file, static_cast<std::uint32_t>(text.size()));
-  file += "JSON";
-  file += text;
-  if (!binary_.empty()) {
-    append_u32(file, static_cast<std::uint32_t>(binary_.size()));
-    file.append("BIN\0", 4);
-    file += binary_;
-  }
-  return file;
+  return glb_head(json_text(root), binary_.size()) + binary_;
 }
 
 std::optional<std::size_t> index_of(const Json& object, const char* name, std::size_t limit) {

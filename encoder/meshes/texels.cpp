@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/files/binary_numbers.h"
+#include "common/files/glb.h"
 #include "common/json/json.h"
 #include "encoder/meshes/glb_asset.h"
 
@@ -120,16 +121,12 @@ class TexelFinder {
 }  // namespace
 
 std::vector<UvUse> uses_of_uv(std::string_view asset, std::uint64_t max_memory_bytes) {
-  constexpr std::size_t kText = 20;      // behind the headers of the file and its first chunk
-  constexpr std::size_t kTextSize = 12;  // where it is
-  constexpr std::size_t kChunkHeader = 8;
-  if (asset.size() < kText) return {};
-  const std::string_view text = asset.substr(kText, load_u32(asset, kTextSize));
-  const std::size_t binary = std::min(asset.size(), kText + text.size() + kChunkHeader);
+  const auto glb = view_glb(asset);
+  if (!glb) return {};
   JsonProblem ignored;
-  const auto root = read_json<Json>(text, max_memory_bytes, ignored);
+  const auto root = read_json<Json>(glb->json, max_memory_bytes, ignored);
   if (!root || !root->is_object() || !root->contains("materials")) return {};
-  TexelFinder finder(*root, asset.substr(binary));
+  TexelFinder finder(*root, glb->binary);
   finder.find((*root)["materials"]);
   return finder.uses;
 }

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "common/files/glb.h"
 #include "common/json/json.h"
 
 namespace rlpc {
@@ -72,13 +73,8 @@ class GltfBuilder {
   }
 
   std::string glb() const {
-    const std::string text = padded(json_text(with_buffer()), ' ');
     const std::string data = padded(bytes, '\0');
-    std::string file = "glTF";
-    const std::size_t size = 12 + 8 + text.size() + (data.empty() ? 0 : 8 + data.size());
-    file += word(2) + word(size) + word(text.size()) + "JSON" + text;
-    if (!data.empty()) file += word(data.size()) + std::string("BIN\0", 4) + data;
-    return file;
+    return glb_head(json_text(with_buffer()), data.size()) + data;
   }
   // The document with its buffer in a separate file.
   std::string gltf(const std::string& uri) const {
@@ -91,11 +87,6 @@ class GltfBuilder {
   std::string bytes;
 
  private:
-  static std::string word(std::size_t value) {
-    std::string text;
-    for (int i = 0; i < 4; ++i) text += static_cast<char>(value >> (8 * i) & 0xFF);
-    return text;
-  }
   static std::string padded(std::string text, char with) {
     text.resize((text.size() + 3) / 4 * 4, with);
     return text;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/files/binary_numbers.h"
+#include "common/files/glb.h"
 #include "common/json/json.h"
 #include "decoder/meshes/mesh_bytes.h"
 
@@ -29,7 +29,7 @@ std::optional<OutputError> failure_of(const GlbDocument& document, const std::st
   if (const auto reason = document.buffers.failure()) {
     return output_error(path, "store its binary part temporarily", *reason);
   }
-  if (size > kMaxGltfBytes) return too_large_for_glb(path);
+  if (size > kMaxGlbBytes) return too_large_for_glb(path);
   return std::nullopt;
 }
 
@@ -40,17 +40,8 @@ std::optional<OutputError> write_glb(GlbDocument& document, OutputFile& file) {
   document.root["accessors"] = document.buffers.accessors();
   document.root["bufferViews"] = document.buffers.views();
   document.root["buffers"] = GltfJson::array({{{"byteLength", chunk.size()}}});
-  std::string json = glb_text(document.root);
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  const std::uint64_t size = 12 + 8 + json.size() + 8 + chunk.size();
-  if (size > kMaxGltfBytes) return too_large_for_glb(file.path());
-  std::string head = "glTF";
-  append_u32(head, 2);
-  append_u32(head, static_cast<std::uint32_t>(size));
-  append_u32(head, static_cast<std::uint32_t>(json.size()));
-  head += "JSON" + json;
-  append_u32(head, static_cast<std::uint32_t>(chunk.size()));
-  head += std::string("BIN\0", 4);
+  const std::string head = glb_head(glb_text(document.root), chunk.size());
+  if (head.size() + chunk.size() > kMaxGlbBytes) return too_large_for_glb(file.path());
   if (auto error = file.write(head)) return error;
   std::vector<char> block(std::size_t{1} << 16);
   std::uint64_t left = chunk.size();

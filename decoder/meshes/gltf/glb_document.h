@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -11,8 +10,6 @@
 #include "decoder/meshes/gltf/glb_buffers.h"
 
 namespace rlpc {
-
-inline constexpr std::uint64_t kMaxGltfBytes = std::numeric_limits<std::uint32_t>::max();
 
 struct GlbDocument {
   explicit GlbDocument(FrameRate frame_rate);

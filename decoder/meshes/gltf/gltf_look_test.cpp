@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/files/binary_numbers.h"
+#include "common/files/glb.h"
 
 namespace rlpc {
 namespace {
@@ -18,14 +18,7 @@ std::vector<AttributeSet> materials(std::uint32_t first, std::uint32_t second) {
   return sets;
 }
 
-std::string asset_of(std::string json) {
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  std::string glb = "glTF";
-  append_u32(glb, 2);
-  append_u32(glb, static_cast<std::uint32_t>(20 + json.size()));
-  append_u32(glb, static_cast<std::uint32_t>(json.size()));
-  return glb + "JSON" + json;
-}
+std::string asset_of(const std::string& json) { return glb_head(json, 0); }
 
 struct Written {
   GltfJson root = GltfJson::object();

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "common/files/glb.h"
 #include "decoder/meshes/gltf/glb_animation.h"
 
 namespace rlpc {
@@ -87,7 +88,7 @@ bool GltfMorph::finish(std::span<const Clip> spans, FrameRate frame_rate) {
   for (const Clip& clip : spans) {
     most_weights += std::uint64_t{clip.num_frames} * (targets_.size() + 1);
   }
-  if (most_weights > kMaxGltfBytes) return false;
+  if (most_weights > kMaxGlbBytes) return false;
   if (num_frames_ > 1 && targets_.empty()) {
     // An animation without motion still has a duration.
     add_target(buffers.add_zero_vectors(static_cast<std::uint32_t>(mesh_.vertex.size())));

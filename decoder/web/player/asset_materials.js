@@ -1,31 +1,9 @@
 // Colours, emission and their textures, and normal maps, from the asset of a stream: a GLB without
 // geometry. It is from anybody: what does not fit is left out, and nothing is fetched.
+import { glbChunks, glbJson } from "../package/src/glb.js";
 
-const kMagic = 0x46546c67; // "glTF"
-const kJsonChunk = 0x4e4f534a;
-const kHeaderBytes = 12;
-const kChunkBytes = 8;
 const kMostPixels = 4096; // of a side of a texture; larger ones are scaled down
 const kWhite = [1, 1, 1, 1];
-
-/** The JSON and the bytes of a GLB. */
-function chunksOf(bytes) {
-  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  if (bytes.length < kHeaderBytes + kChunkBytes || view.getUint32(0, true) !== kMagic) {
-    throw new Error("it is no GLB");
-  }
-  let json, binary = new Uint8Array();
-  for (let at = kHeaderBytes; at + kChunkBytes <= bytes.length; ) {
-    const size = view.getUint32(at, true);
-    const chunk = bytes.subarray(at + kChunkBytes, at + kChunkBytes + size);
-    if (chunk.length < size) throw new Error("its GLB is cut off");
-    const isJson = view.getUint32(at + 4, true) === kJsonChunk;
-    if (isJson) json = JSON.parse(new TextDecoder().decode(chunk));
-    else binary = chunk;
-    at += kChunkBytes + size;
-  }
-  return { json: json ?? {}, binary };
-}
 
 function numbers(value, count, usual) {
   const fits = Array.isArray(value) && value.length === count && value.every(Number.isFinite);
@@ -67,7 +45,7 @@ async function pictureOf(blob) {
 /** Materials for Viewer.setMaterials(), and what is wrong with them: { materials, problems }.
  * Throws if the asset is not one. */
 export async function readMaterials(bytes) {
-  const glb = chunksOf(bytes);
+  const glb = { json: glbJson(bytes), binary: glbChunks(bytes).binary };
   const { materials = [], textures = [], images = [], samplers = [] } = glb.json;
   const problems = [];
   const pictures = new Map(); // promises, by number of the image

@@ -1,9 +1,8 @@
 // The JSON of an asset (a GLB), measured before anything parses it: a stream of a few kilobytes can
 // hold megabytes of it, which become hundreds as objects.
 import { RlpcError } from "./error.js";
+import { glbChunks } from "./glb.js";
 
-const kTextSize = 12; // where the size of the first chunk is
-const kText = 20; // where that chunk is
 const kMaxDepth = 100; // as in common/json/json_text.h
 const kBytesOfValue = 160; // an object or array with its place in another
 const kBytesOfByte = 4; // of text, as strings
@@ -37,12 +36,18 @@ export function measureJson(text) {
   return { bytes: kBytesOfValue * values + kBytesOfByte * text.length, deepest };
 }
 
+function jsonIn(glb) {
+  try {
+    return glbChunks(glb).json;
+  } catch { // nothing will parse it
+    return new Uint8Array();
+  }
+}
+
 /** Throws an RlpcError if parsing the JSON of an asset would take more than maxBytes, or if that is
  * nested too deeply for functions that walk through it. */
 export function checkAsset(glb, maxBytes) {
-  if (glb.length < kText) return;
-  const size = new DataView(glb.buffer, glb.byteOffset).getUint32(kTextSize, true);
-  const { bytes, deepest } = measureJson(glb.subarray(kText, kText + size));
+  const { bytes, deepest } = measureJson(jsonIn(glb));
   if (deepest > kMaxDepth) {
     throw new RlpcError(`the JSON of the asset is nested more than ${kMaxDepth} levels deep`,
       { kind: "invalid", element: "asset_size" });

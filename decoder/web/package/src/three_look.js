@@ -3,11 +3,10 @@ import { BufferAttribute, Mesh, MeshStandardMaterial } from "three";
 
 import { coarseSurface } from "./coarse_surface.js";
 import { RlpcDecoder } from "./decoder.js";
+import { glbJson } from "./glb.js";
 import { byMaterial, hasNormals } from "./sets.js";
 
 const kUsualColour = 0xb4bcc4;
-const kHeaderBytes = 12; // of a GLB
-const kChunkBytes = 8; // before the contents of each chunk; the first is JSON
 
 const warnings = new Set();
 
@@ -91,17 +90,11 @@ async function loadMaterials(asset, textures, gltfLoader) {
   }
 }
 
-function jsonOf(glb) {
-  const size = new DataView(glb.buffer, glb.byteOffset).getUint32(kHeaderBytes, true);
-  const start = kHeaderBytes + kChunkBytes;
-  return JSON.parse(new TextDecoder().decode(glb.subarray(start, start + size)));
-}
-
 /** For each set of texture coordinates of the encoder's input, the number of the first that is
  * equal, which alone is in the stream; empty if all differ. */
 function equalUvsOf(asset) {
   try {
-    const equal = asset && jsonOf(asset).extras?.equal_uv;
+    const equal = asset && glbJson(asset).extras?.equal_uv;
     return Array.isArray(equal) ? equal : [];
   } catch { // of no GLB
     return [];
@@ -110,7 +103,7 @@ function equalUvsOf(asset) {
 
 /** The same materials, as the text of a glTF file. */
 function withoutTextures(glb) {
-  const { asset, materials, extensionsUsed } = jsonOf(glb);
+  const { asset, materials, extensionsUsed } = glbJson(glb);
   return JSON.stringify({ asset, materials, extensionsUsed },
     (key, value) => (key.endsWith("Texture") ? undefined : value));
 }

@@ -7,20 +7,16 @@
 #include <optional>
 #include <string>
 
+#include "common/files/glb.h"
 #include "encoder/meshes/frame_source.h"
 #include "encoder/meshes/input_file.h"
 
 namespace rlpc {
 
 struct GltfFile {
-  struct Chunk {
-    std::uint64_t offset = 0;
-    std::uint64_t size = 0;
-  };
-
   InputFile file;
   std::shared_ptr<const nlohmann::json> json;
-  std::optional<Chunk> binary;  // .glb only; lies within the file
+  std::optional<GlbChunk> binary;  // .glb only; lies within the file
   // Upper bound of the memory for the document as JSON and as a GltfDocument.
   std::uint64_t document_bytes = 0;
 };
