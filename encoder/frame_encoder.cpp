@@ -7,6 +7,7 @@
 #include "encoder/codec/sequence/check_settings.h"
 #include "encoder/codec/sequence/low_delay_encoder.h"
 #include "encoder/codec/sequence/span_encoder.h"
+#include "encoder/complete_settings.h"
 
 namespace rlpc {
 namespace {
@@ -34,6 +35,7 @@ std::optional<InputError> check(const FrameFormat& format, const EncoderSettings
 
 InputResult<FrameEncoder> FrameEncoder::create(FrameFormat format, EncoderSettings settings,
                                                ByteSink sink) {
+  settings = complete_settings(std::move(settings), format.clips, format.asset);
   if (auto error = check(format, settings)) return *error;
   std::unique_ptr<FrameBackend> coder;
   if (settings.low_delay) {

@@ -11,6 +11,7 @@
 #include "encoder/codec/sequence/search_list.h"
 #include "encoder/codec/sequence/sequence_encoder.h"
 #include "encoder/codec/sequence/stream_verifier.h"
+#include "encoder/complete_settings.h"
 
 namespace rlpc {
 namespace {
@@ -65,8 +66,9 @@ InputResult<Found> best_of(FrameSource& source, const EncoderSettings& settings,
 
 }  // namespace
 
-InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& settings,
+InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& asked,
                                  const ByteSink& sink, const Progress& progress) {
+  const EncoderSettings settings = complete_settings(asked, source.clips(), source.asset());
   if (auto error = check_settings(settings)) return *error;
   if (auto error = check_clips(settings.clips, source.num_frames())) return *error;
   if (auto error = check_attributes(settings.attributes, source.attributes())) return *error;

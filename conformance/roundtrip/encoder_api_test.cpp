@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/files/glb.h"
 #include "conformance/testing/small_animation.h"
 #include "decoder/rlpc_decoder.h"
 
@@ -307,6 +308,38 @@ TEST(Encoder, PassesOnTheErrorOfItsSource) {
 TEST(Encoder, RefusesCoordinatesBeyondItsGrid) {
   MemoryFrames source({}, {{0.0F, 0.0F, 0.0F, 1.0F, 3e38F, 1.0F}});
   EXPECT_NE(error_of(source, {}).find("scale the animation down"), std::string::npos);
+}
+
+// Frames of a tube with clips and an asset, as readers of glTF make them.
+MemoryFrames tube_of_an_asset() {
+  MemoryFrames plain = bending_tube(4, 6);
+  FrameSource::Shape shape;
+  shape.frame_rate = plain.frame_rate();
+  shape.triangles = plain.triangles();
+  shape.clips = {{"walk", 0, 4}, {"run", 4, 2}};
+  shape.asset = glb_head(R"({"asset":{"version":"2.0"}})", 0);
+  std::vector<std::vector<float>> frames(plain.num_frames());
+  for (std::uint32_t f = 0; f < plain.num_frames(); ++f) {
+    frames[f].resize(3 * std::size_t{plain.num_vertices()});
+    plain.read_frame(f, frames[f]);
+  }
+  return {std::move(shape), std::move(frames)};
+}
+
+TEST(Encoder, TakesClipsAndAssetFromItsSource) {
+  MemoryFrames source = tube_of_an_asset();
+  for (const bool takes : {true, false}) {
+    EncoderSettings settings;
+    settings.takes_from_source = takes;
+    const StreamBytes bytes = encode_to_memory(source, settings);
+    ASSERT_FALSE(bytes.empty());
+    auto decoder = Decoder::open(memory_source(bytes));
+    ASSERT_TRUE(decoder);
+    EXPECT_EQ(decoder->clips().size(), takes ? 2U : 0U);
+    const auto asset = decoder->asset();
+    ASSERT_TRUE(asset);
+    EXPECT_EQ(std::string(asset->begin(), asset->end()), takes ? source.asset() : "");
+  }
 }
 
 TEST(Encoder, ReportsProgressUpToOne) {

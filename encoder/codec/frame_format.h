@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "common/codec/mesh/clip.h"
 #include "common/codec/mesh/mesh.h"
 #include "encoder/meshes/source_attribute.h"
 
@@ -19,6 +21,8 @@ struct FrameFormat {
   FrameRate frame_rate;
   std::vector<Triangle> triangles;  // indices below num_vertices; may be empty
   SourceAttributes attributes{};    // of the triangles; their indices are not checked
+  std::vector<Clip> clips{};        // for EncoderSettings::takes_from_source
+  std::string asset{};              // for EncoderSettings::takes_from_source
   // Bounding box of all frames, in units, within 2^100. A box that is much too large makes the
   // grid coarser.
   std::array<float, 3> box_min{};

@@ -170,11 +170,15 @@ struct EncoderSettings {
   bool keep_order = false;  // restore the vertex order of the input
   HashMode hash_mode = HashMode::kGof;
   std::string metadata;  // JSON text, not validated, up to 1 MiB; empty: no metadata unit
-  // Names of parts of the sequence, up to kMaxClips; empty: no clip table. Not checked against
-  // the number of frames if that is not known beforehand.
+  // Names of parts of the sequence, up to kMaxClips; empty: those of the animation, if
+  // takes_from_source, otherwise no clip table. Not checked against the number of frames if that
+  // is not known beforehand.
   std::vector<Clip> clips;
-  // A GLB without geometry (7.16), not validated, below 2^31 bytes; empty: no asset unit.
+  // A GLB without geometry (7.16), not validated, below 2^31 bytes; empty: that of the animation,
+  // if takes_from_source and attributes are not dropped, otherwise no asset unit.
   std::string asset;
+  // The animation is a FrameSource, or the FrameFormat of a FrameEncoder.
+  bool takes_from_source = true;
   // Of the attributes that the source has.
   AttributeSettings attributes;
   // Encodings that may need more memory fail before they start. The estimate is for animations

@@ -128,7 +128,7 @@ ROOMS = {
         "common/codec/kinds", "common/testing", "decoder/codec/units"},
 
     # Floating point, decisions, structures to bits.
-    "encoder": {"encoder/codec", "encoder/codec/sequence", "encoder/meshes",
+    "encoder": {"common/codec/mesh", "encoder/codec", "encoder/codec/sequence", "encoder/meshes",
                 "encoder/meshes/open"},
     # What callers choose, and are told.
     "encoder/codec": {"common/codec/kinds/inter", "common/codec/kinds/skinned",

@@ -24,7 +24,7 @@
 #include "common/files/standard_output.h"
 #include "common/json/json.h"
 #include "encoder/codec/kinds/inter/frame_pattern_text.h"
-#include "encoder/codec/sequence/dry_run.h"
+#include "encoder/dry_run.h"
 #include "encoder/codec/sequence/target/quality.h"
 #include "encoder/meshes/axes.h"
 #include "encoder/meshes/frame_source.h"
@@ -32,7 +32,6 @@
 #include "encoder/meshes/input_format.h"
 #include "encoder/meshes/input_notes.h"
 #include "encoder/meshes/open/open_source.h"
-#include "encoder/meshes/texels.h"
 #include "encoder/programs/rlpcenc/encode_options.h"
 #include "encoder/programs/rlpcenc/low_delay.h"
 #include "encoder/programs/rlpcenc/normal_report.h"
@@ -430,11 +429,6 @@ int run(EncodeOptions& o) {
   std::vector<std::string> notes = (*source)->notes();
   for (std::string& doubt : doubts(o, **source)) notes.push_back(std::move(doubt));
   for (const std::string& note : notes) tell_note(o, name, note);
-  if (o.settings.clips.empty()) o.settings.clips = (*source)->clips();
-  if (!o.settings.attributes.dropped) {
-    o.settings.asset = (*source)->asset();
-    o.settings.attributes.uv_uses = uses_of_uv(o.settings.asset, o.settings.max_memory_bytes);
-  }
   if (o.dry_run) return run_dry(o, **source);
   const std::size_t told = (*source)->notes().size();
   auto report = encode_to_files(o, **source);

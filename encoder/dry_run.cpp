@@ -1,4 +1,4 @@
-#include "encoder/codec/sequence/dry_run.h"
+#include "encoder/dry_run.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,8 @@
 #include "encoder/codec/sequence/check_settings.h"
 #include "encoder/codec/sequence/memory_need.h"
 #include "encoder/codec/sequence/sequence_coding.h"
+#include "encoder/complete_settings.h"
+#include "encoder/rlpc_encoder.h"
 
 namespace rlpc {
 namespace {
@@ -72,8 +74,9 @@ std::uint64_t stretch_frames(std::uint64_t gof_frames) {
 
 }  // namespace
 
-InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSettings& settings,
+InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSettings& asked,
                                          const Progress& progress) {
+  const EncoderSettings settings = complete_settings(asked, source.clips(), source.asset());
   const ByteSink discard = [](std::span<const std::uint8_t>) { return true; };
   const std::uint64_t stretch = stretch_frames(longest_gof(settings, source.num_vertices()));
   if (source.num_frames() <= kStretches * std::max(stretch, kStretchFrames)) {

@@ -1,4 +1,4 @@
-#include "encoder/codec/sequence/dry_run.h"
+#include "encoder/dry_run.h"
 
 #include <gtest/gtest.h>
 
