@@ -30,7 +30,7 @@ class AccessUnitParser {
 
   // Each `r` covers exactly the payload of a unit; unit_bytes: of the unit with header and CRC.
   //
-  // 6.5 gof( ), once. first_frame: the first frame that the GOF must have. rigs: the skinned
+  // 6.5 gof( ), once. first_frame: the first frame that the GOF must have. rigs: the shared
   // rigs alive.
   Result<bool> gof(BitReader& r, std::uint32_t first_frame, const RigSlots& rigs,
                    std::uint64_t unit_bytes);

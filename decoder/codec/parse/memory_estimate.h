@@ -68,7 +68,7 @@ constexpr std::uint64_t memory_of_adaptive_weights(std::uint64_t num_vertices) {
 
 // An inter GOF: frames without their residuals, and their order; per vertex the position in
 // several frames, neighbours and weights; with learned weights, for each temporal layer, errors
-// and a filter; rigs of layer groups, for each depth.
+// and a filter; models of layer groups, for each depth.
 inline std::uint64_t memory_of_frames(std::uint64_t num_vertices, std::uint64_t num_frames,
                                       const InterSettings& settings) {
   constexpr std::uint64_t kBytesPerFrame = 160;

@@ -250,7 +250,7 @@ TEST(ParseTracksRanges, TrajectoriesOfBothAreBoundedByTheLevel) {
     for (int l = 0; l < 510; ++l) slice.trajectory_flag(false);
     EXPECT_TRUE(tracks.slice(slice));
     SliceRecipe own(2, 0);
-    // Not the first slice with such elements: the rigs go on.
+    // Not the first slice with such elements: the models go on.
     own.rigs = slice.rigs;
     own.num_group_components_minus1(local - 1);
     for (std::int32_t l = 0; l < local; ++l) own.trajectory(0, 0, 0, 0, 0, 3);

@@ -28,7 +28,7 @@ class SpanUnits {
   // The same; later spans may use the rig. rest: as decoded, 1/16 grid units.
   EncodedSpan with_kept_rig(CodedSpan coded,
                             const std::array<std::vector<std::int32_t>, 3>& rest) const;
-  // GOFs of tracks of an earlier rig. local_groups [GOF].
+  // Skinned GOFs with the rig of an earlier span. local_groups [GOF].
   EncodedSpan with_earlier_rig(const KeptRig& kept, std::vector<SkinnedGof> gofs,
                                std::vector<LocalGroup> local_groups) const;
 
