@@ -201,7 +201,7 @@ void StreamValidator::gof_body(const UnitHeader& unit, const Payload& payload,
     findings_.error(read.error());
     report_.complete = false;
     gof_.parser.reset();
-  } else if (!gof_.parser->has_slices()) {
+  } else if (!has_slices(gof_.parser->kind())) {
     end_slices();
   }
 }

@@ -14,7 +14,7 @@ LiveGof::LiveGof(StreamReader& stream, const SliceCut& cut)
 Result<bool> LiveGof::begin(const UnitHeader& gof_unit) {
   gof_unit_ = gof_unit;
   first_frame_ = stream_.next_first_frame();
-  end_ = gof_unit.end();
+  cursor_.emplace(stream_.units(), gof_unit);
   const auto payload = stream_.units().payload(gof_unit);
   if (!payload) return payload.error();
   BitReader r = stream_.units().bits(gof_unit, *payload);
@@ -28,23 +28,16 @@ Result<bool> LiveGof::begin(const UnitHeader& gof_unit) {
 
 // 6.1 access_unit( ): the next frame unit; the GOF ends with the last.
 Result<bool> LiveGof::read_unit() {
+  const auto more = cursor_->advance({.slice = UnitType::kFrame, .must_go_on = true});
+  if (!more) return more;
+  ended_ = !*more;
+  if (ended_) return true;
   UnitReader& units = stream_.units();
-  if (!units.goes_on_after(end_ - 1)) {
-    ended_ = true;
-    return true;
-  }
-  const auto unit = units.header_at(end_);
-  if (!unit) return unit.error();
-  if (unit->type() != UnitType::kFrame) {
-    ended_ = true;
-    return true;
-  }
-  const auto payload = units.payload(*unit);
+  const auto payload = units.payload(cursor_->unit());
   if (!payload) return payload.error();
-  BitReader r = units.bits(*unit, *payload);
-  if (auto ok = parser_.frame(r, unit->offset * 8); !ok) return ok;
-  end_ = unit->end();
-  units.forget(end_);
+  BitReader r = units.bits(cursor_->unit(), *payload);
+  if (auto ok = parser_.frame(r, cursor_->unit().offset * 8); !ok) return ok;
+  units.forget(cursor_->end());
   return true;
 }
 
@@ -72,7 +65,7 @@ Result<bool> LiveGof::next() {
     if (recon_->place() < (ended_ ? num_frames : parser_.complete_places())) {
       decode_place();
     } else if (ended_) {
-      stream_.go_past(gof_unit_, num_frames, end_);
+      stream_.go_past(gof_unit_, num_frames, cursor_->end());
       return false;
     } else if (auto ok = read_unit(); !ok) {
       return ok;

@@ -11,6 +11,7 @@
 #include "common/memory/owned.h"
 #include "decoder/codec/parse/parse_inter_gof.h"
 #include "decoder/codec/units/stream_reader.h"
+#include "decoder/codec/units/unit_cursor.h"
 
 namespace rlpc {
 
@@ -51,7 +52,7 @@ class LiveGof : public Owned {
   StreamReader& stream_;
   UnitHeader gof_unit_;
   std::uint32_t first_frame_ = 0;
-  std::uint64_t end_ = 0;  // of the units read
+  std::optional<UnitCursor> cursor_;  // at the last unit that has been read
   InterGofParser parser_;
   std::optional<InterRecon> recon_;
   bool ended_ = false;

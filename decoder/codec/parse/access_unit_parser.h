@@ -34,9 +34,8 @@ class AccessUnitParser {
   // rigs alive.
   Result<bool> gof(BitReader& r, std::uint32_t first_frame, const RigSlots& rigs,
                    std::uint64_t unit_bytes);
-  // The type of the units that may follow; none: there are no such units.
-  std::optional<UnitType> slice_type() const { return rlpc::slice_type(kind_); }
-  bool has_slices() const { return rlpc::has_slices(kind_); }
+  // The kind of the GOF, once its unit has been parsed.
+  GofKind kind() const { return kind_; }
   // Whether the cut drops the slice whose unit begins with `r`, which then need not be parsed.
   bool drops(BitReader& r);
   // 6.12 slice_unit( ) or 6.14.2 frame_unit( ), any number of times. unit_bit_pos: of the unit.

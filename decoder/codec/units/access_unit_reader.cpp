@@ -6,8 +6,55 @@
 #include "common/memory/owned.h"
 #include "decoder/codec/parse/memory_estimate.h"
 #include "decoder/codec/parse/parse_gof_header.h"
+#include "decoder/codec/units/unit_cursor.h"
 
 namespace rlpc {
+namespace {
+
+// The units after the GOF unit. A GOF whose frames are output before it ends has hashes in its
+// frame units (7.2).
+Followers followers_of_gof(const SequenceHeader& header, GofKind kind, bool wants_hash) {
+  return {slice_type(kind), wants_hash && !is_live(header, kind)};
+}
+
+// The units after a rig unit: another unit always follows, if only the end of the sequence.
+constexpr Followers kFollowersOfRig{UnitType::kSlice, false, true};
+
+}  // namespace
+
+// The parser of an access unit, as read_units() and parse_units() see it.
+struct AccessUnitReader::GofUnits {
+  AccessUnitParser parser;
+  const SequenceHeader& header;
+  std::uint32_t first_frame;
+  bool wants_hash;
+
+  Followers followers() const { return followers_of_gof(header, parser.kind(), wants_hash); }
+  Result<bool> parse(BitReader& r, const UnitHeader& unit, const RigSlots& rigs) {
+    const std::uint64_t unit_bytes = unit.end() - unit.offset;
+    switch (unit.type()) {
+      case UnitType::kGof:
+        return parser.gof(r, first_frame, rigs, unit_bytes);
+      case UnitType::kSlice:
+      case UnitType::kFrame:
+        return parser.slice(r, unit.offset * 8, unit_bytes);
+      default:
+        return parser.hash(r);
+    }
+  }
+};
+
+// The parser of a shared rig.
+struct AccessUnitReader::RigUnits {
+  RigParser parser;
+
+  static Followers followers() { return kFollowersOfRig; }
+  Result<bool> parse(BitReader& r, const UnitHeader& unit, const RigSlots& rigs) {
+    const std::uint64_t unit_bytes = unit.end() - unit.offset;
+    return unit.type() == UnitType::kRig ? parser.rig(r, rigs, unit_bytes)
+                                         : parser.slice(r, unit.offset * 8, unit_bytes);
+  }
+};
 
 template <class Parser>
 Result<bool> AccessUnitReader::is_dropped(const UnitHeader& unit, Parser& parser) {
@@ -19,67 +66,117 @@ Result<bool> AccessUnitReader::is_dropped(const UnitHeader& unit, Parser& parser
   return parser.drops(r);
 }
 
-Result<AccessUnit> AccessUnitReader::read(const UnitHeader& gof_unit, std::uint32_t first_frame,
-                                          const RigSlots& rigs) {
-  AccessUnitParser parser(context_, memory_limit(), cut_);
+template <class Units>
+Result<bool> AccessUnitReader::read_units(const UnitHeader& first, const RigSlots& rigs,
+                                          Units& object) {
   const std::uint64_t of_rigs = memory_of_rigs(rigs);
-  for (std::optional<UnitHeader> unit = gof_unit; unit;) {
-    const auto dropped = is_dropped(*unit, parser);
+  UnitCursor cursor(units_, first);
+  for (;;) {
+    const UnitHeader& unit = cursor.unit();
+    const auto dropped = is_dropped(unit, object.parser);
     if (!dropped) return dropped.error();
     if (!*dropped) {
-      const auto bytes = payload(*unit, std::max(of_rigs, parser.memory_bytes()));
+      const auto bytes = payload(unit, std::max(of_rigs, object.parser.memory_bytes()));
       if (!bytes) return bytes.error();
-      if (auto ok = parse_unit(parser, *unit, *bytes, first_frame, rigs); !ok) {
-        return ok.error();
-      }
+      BitReader r = units_.bits(unit, *bytes);
+      if (auto ok = object.parse(r, unit, rigs); !ok) return ok;
     }
-    end_ = unit->end();
-    const auto next = unit_after(*unit, parser.slice_type());
-    if (!next) return next.error();
-    unit = *next;
+    end_ = cursor.end();
+    const auto more = cursor.advance(object.followers());
+    if (!more || !*more) return more;
   }
-  return parser.finish();
+}
+
+template <class Units>
+Result<bool> AccessUnitReader::parse_units(const Vector<RawUnit>& raw, const RigSlots& rigs,
+                                           const MemoryLimit& memory, Units& object) const {
+  const std::uint64_t of_rigs = memory_of_rigs(rigs);
+  for (const auto& [unit, payload] : raw) {
+    const std::uint64_t taken_bytes = std::max(of_rigs, object.parser.memory_bytes());
+    if (auto ok = check_fits(unit, taken_bytes, memory); !ok) return ok;
+    BitReader r = units_.bits(unit, payload);
+    if (auto ok = object.parse(r, unit, rigs); !ok) return ok;
+  }
+  return true;
+}
+
+template <class FollowersOf>
+std::optional<Vector<RawUnit>> AccessUnitReader::collect_units(const UnitHeader& first,
+                                                               std::uint64_t max_memory_bytes,
+                                                               const FollowersOf& followers) {
+  Vector<RawUnit> raw;
+  std::optional<Followers> follow;
+  std::uint64_t num_bytes = 0;
+  UnitCursor cursor(units_, first);
+  for (;;) {
+    num_bytes += cursor.unit().size;
+    if (num_bytes > max_memory_bytes) return std::nullopt;
+    auto payload = units_.payload(cursor.unit());
+    if (!payload) return std::nullopt;
+    raw.push_back({cursor.unit(), std::move(*payload)});
+    if (!follow) follow = followers(raw.front());
+    if (!follow) return std::nullopt;
+    const auto more = cursor.advance(*follow);
+    if (!more) return std::nullopt;
+    if (!*more) return raw;
+  }
+}
+
+Result<AccessUnit> AccessUnitReader::read(const UnitHeader& gof_unit, std::uint32_t first_frame,
+                                          const RigSlots& rigs) {
+  GofUnits object{{context_, memory_limit(), cut_}, context_.header, first_frame, wants_hash_};
+  if (auto ok = read_units(gof_unit, rigs, object); !ok) return ok.error();
+  return object.parser.finish();
+}
+
+Result<ParsedRig> AccessUnitReader::read_rig(const UnitHeader& rig_unit, const RigSlots& rigs) {
+  RigUnits object{{context_, memory_limit(), cut_}};
+  if (auto ok = read_units(rig_unit, rigs, object); !ok) return ok.error();
+  return object.parser.finish();
 }
 
 std::optional<RawAccessUnit> AccessUnitReader::collect(const UnitHeader& gof_unit,
                                                        std::uint32_t first_frame,
                                                        std::uint64_t max_memory_bytes) {
-  RawAccessUnit coded;
-  std::uint64_t num_bytes = 0;
-  for (std::optional<UnitHeader> unit = gof_unit; unit;) {
-    num_bytes += unit->size;
-    if (num_bytes > max_memory_bytes) return std::nullopt;
-    auto payload = units_.payload(*unit);
-    if (!payload) return std::nullopt;
-    if (coded.units.empty()) {
-      BitReader r = units_.bits(*unit, *payload);
-      coded.gof = parse_gof_header(r, context_.header, first_frame);
-      if (r.error()) return std::nullopt;
-    }
-    coded.units.push_back({*unit, std::move(*payload)});
-    const auto next = unit_after(*unit, slice_type(coded.gof.kind));
-    if (!next) return std::nullopt;
-    unit = *next;
-  }
-  return coded;
+  RawAccessUnit raw;
+  auto units = collect_units(
+      gof_unit, max_memory_bytes, [&](const RawUnit& first) -> std::optional<Followers> {
+        BitReader r = units_.bits(first.header, first.payload);
+        raw.gof = parse_gof_header(r, context_.header, first_frame);
+        if (r.error()) return std::nullopt;
+        return followers_of_gof(context_.header, raw.gof.kind, wants_hash_);
+      });
+  if (!units) return std::nullopt;
+  raw.units = std::move(*units);
+  return raw;
 }
 
-Result<AccessUnit> AccessUnitReader::parse(const RawAccessUnit& coded, const RigSlots& rigs,
+std::optional<Vector<RawUnit>> AccessUnitReader::collect_rig(const UnitHeader& rig_unit,
+                                                             std::uint64_t max_memory_bytes) {
+  return collect_units(rig_unit, max_memory_bytes, [](const RawUnit&) {
+    return std::optional<Followers>(kFollowersOfRig);
+  });
+}
+
+Result<AccessUnit> AccessUnitReader::parse(const RawAccessUnit& raw, const RigSlots& rigs,
                                            const SliceCut& cut,
                                            std::uint64_t max_memory_bytes) const {
   const MemoryLimit memory = limit_ahead(max_memory_bytes);
-  const std::uint64_t of_rigs = memory_of_rigs(rigs);
-  AccessUnitParser parser(context_, memory, cut);
-  for (const auto& [unit, payload] : coded.units) {
-    const std::uint64_t taken_bytes = std::max(of_rigs, parser.memory_bytes());
-    if (auto ok = check_fits(unit, taken_bytes, memory); !ok) return ok.error();
-    if (auto ok = parse_unit(parser, unit, payload, coded.gof.first_frame, rigs); !ok)
-      return ok.error();
-  }
-  return parser.finish();
+  GofUnits object{{context_, memory, cut}, context_.header, raw.gof.first_frame, wants_hash_};
+  if (auto ok = parse_units(raw.units, rigs, memory, object); !ok) return ok.error();
+  return object.parser.finish();
 }
 
-// Where read() has too little memory, so has parse().
+Result<ParsedRig> AccessUnitReader::parse_rig(const Vector<RawUnit>& raw, const RigSlots& rigs,
+                                              const SliceCut& cut,
+                                              std::uint64_t max_memory_bytes) const {
+  const MemoryLimit memory = limit_ahead(max_memory_bytes);
+  RigUnits object{{context_, memory, cut}};
+  if (auto ok = parse_units(raw, rigs, memory, object); !ok) return ok.error();
+  return object.parser.finish();
+}
+
+// parse() runs out of memory whenever read() would.
 MemoryLimit AccessUnitReader::limit_ahead(std::uint64_t max_memory_bytes) const {
   const MemoryLimit limit = memory_limit();
   const std::uint64_t left = limit.max_bytes - std::min(limit.max_bytes, limit.bytes_in_use);
@@ -97,107 +194,6 @@ Result<Vector<std::uint8_t>> AccessUnitReader::payload(const UnitHeader& unit,
                                                        std::uint64_t taken_bytes) {
   if (auto ok = check_fits(unit, taken_bytes, memory_limit()); !ok) return ok.error();
   return units_.payload(unit);
-}
-
-Result<bool> AccessUnitReader::parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
-                                          const Vector<std::uint8_t>& payload,
-                                          std::uint32_t first_frame,
-                                          const RigSlots& rigs) const {
-  BitReader r = units_.bits(unit, payload);
-  const std::uint64_t unit_bytes = unit.end() - unit.offset;
-  switch (unit.type()) {
-    case UnitType::kGof:
-      return parser.gof(r, first_frame, rigs, unit_bytes);
-    case UnitType::kSlice:
-    case UnitType::kFrame:
-      return parser.slice(r, unit.offset * 8, unit_bytes);
-    default:
-      return parser.hash(r);
-  }
-}
-
-Result<ParsedRig> AccessUnitReader::read_rig(const UnitHeader& rig_unit, const RigSlots& rigs) {
-  RigParser parser(context_, memory_limit(), cut_);
-  const std::uint64_t of_rigs = memory_of_rigs(rigs);
-  for (std::optional<UnitHeader> unit = rig_unit; unit;) {
-    const auto dropped = is_dropped(*unit, parser);
-    if (!dropped) return dropped.error();
-    if (!*dropped) {
-      const auto bytes = payload(*unit, std::max(of_rigs, parser.memory_bytes()));
-      if (!bytes) return bytes.error();
-      if (auto ok = parse_unit(parser, *unit, *bytes, rigs); !ok) return ok.error();
-    }
-    end_ = unit->end();
-    const auto next = slice_after(*unit);
-    if (!next) return next.error();
-    unit = *next;
-  }
-  return parser.finish();
-}
-
-std::optional<Vector<RawUnit>> AccessUnitReader::collect_rig(const UnitHeader& rig_unit,
-                                                             std::uint64_t max_memory_bytes) {
-  Vector<RawUnit> coded;
-  std::uint64_t num_bytes = 0;
-  for (std::optional<UnitHeader> unit = rig_unit; unit;) {
-    num_bytes += unit->size;
-    if (num_bytes > max_memory_bytes) return std::nullopt;
-    auto payload = units_.payload(*unit);
-    if (!payload) return std::nullopt;
-    coded.push_back({*unit, std::move(*payload)});
-    const auto next = slice_after(*unit);
-    if (!next) return std::nullopt;
-    unit = *next;
-  }
-  return coded;
-}
-
-Result<ParsedRig> AccessUnitReader::parse_rig(const Vector<RawUnit>& coded,
-                                              const RigSlots& rigs, const SliceCut& cut,
-                                              std::uint64_t max_memory_bytes) const {
-  const MemoryLimit memory = limit_ahead(max_memory_bytes);
-  const std::uint64_t of_rigs = memory_of_rigs(rigs);
-  RigParser parser(context_, memory, cut);
-  for (const auto& [unit, payload] : coded) {
-    const std::uint64_t taken_bytes = std::max(of_rigs, parser.memory_bytes());
-    if (auto ok = check_fits(unit, taken_bytes, memory); !ok) return ok.error();
-    if (auto ok = parse_unit(parser, unit, payload, rigs); !ok) return ok.error();
-  }
-  return parser.finish();
-}
-
-Result<bool> AccessUnitReader::parse_unit(RigParser& parser, const UnitHeader& unit,
-                                          const Vector<std::uint8_t>& payload,
-                                          const RigSlots& rigs) const {
-  BitReader r = units_.bits(unit, payload);
-  const std::uint64_t unit_bytes = unit.end() - unit.offset;
-  return unit.type() == UnitType::kRig ? parser.rig(r, rigs, unit_bytes)
-                                       : parser.slice(r, unit.offset * 8, unit_bytes);
-}
-
-Result<std::optional<UnitHeader>> AccessUnitReader::slice_after(const UnitHeader& unit) {
-  const auto next = units_.header_at(unit.end());
-  if (!next) return next.error();
-  const bool follows = next->type() == UnitType::kSlice;
-  return follows ? std::optional(*next) : std::nullopt;
-}
-
-// The unit that follows `unit` in the same access unit; none if `unit` is the last.
-Result<std::optional<UnitHeader>> AccessUnitReader::unit_after(const UnitHeader& unit,
-                                                               std::optional<UnitType> slice) {
-  using Next = std::optional<UnitHeader>;
-  const bool may_follow = slice || wants_hash_;
-  if (unit.type() == UnitType::kGofHash || !may_follow || !units_.goes_on_after(unit.end())) {
-    return Next();
-  }
-  const auto next = units_.header_at(unit.end());
-  if (!next) return next.error();
-  const bool is_frames = slice == UnitType::kFrame;
-  const bool may_have_hash =
-      wants_hash_ && !(is_frames && is_live(context_.header, GofKind::kInter));
-  const bool follows = (slice && next->type() == *slice) ||
-                       (may_have_hash && next->type() == UnitType::kGofHash);
-  return follows ? Next(*next) : Next();
 }
 
 }  // namespace rlpc

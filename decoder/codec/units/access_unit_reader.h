@@ -14,6 +14,7 @@
 #include "decoder/codec/parse/access_unit_parser.h"
 #include "decoder/codec/parse/memory_limit.h"
 #include "decoder/codec/parse/rig_parser.h"
+#include "decoder/codec/units/unit_cursor.h"
 #include "decoder/codec/units/unit_reader.h"
 
 namespace rlpc {
@@ -74,20 +75,31 @@ class AccessUnitReader {
   std::optional<RawAccessUnit> collect(const UnitHeader& gof_unit, std::uint32_t first_frame,
                                        std::uint64_t max_memory_bytes);
   // cut: one that no set_cut() changes.
-  Result<AccessUnit> parse(const RawAccessUnit& coded, const RigSlots& rigs,
-                           const SliceCut& cut, std::uint64_t max_memory_bytes) const;
+  Result<AccessUnit> parse(const RawAccessUnit& raw, const RigSlots& rigs, const SliceCut& cut,
+                           std::uint64_t max_memory_bytes) const;
   // The same for a shared rig.
   std::optional<Vector<RawUnit>> collect_rig(const UnitHeader& rig_unit,
                                              std::uint64_t max_memory_bytes);
-  Result<ParsedRig> parse_rig(const Vector<RawUnit>& coded, const RigSlots& rigs,
+  Result<ParsedRig> parse_rig(const Vector<RawUnit>& raw, const RigSlots& rigs,
                               const SliceCut& cut, std::uint64_t max_memory_bytes) const;
 
  private:
-  Result<bool> parse_unit(AccessUnitParser& parser, const UnitHeader& unit,
-                          const Vector<std::uint8_t>& payload, std::uint32_t first_frame,
-                          const RigSlots& rigs) const;
-  Result<bool> parse_unit(RigParser& parser, const UnitHeader& unit,
-                          const Vector<std::uint8_t>& payload, const RigSlots& rigs) const;
+  struct GofUnits;
+  struct RigUnits;
+
+  // Reads and parses the units of an access unit or of a shared rig, one by one.
+  template <class Units>
+  Result<bool> read_units(const UnitHeader& first, const RigSlots& rigs, Units& object);
+  // Parses units that have been collected.
+  template <class Units>
+  Result<bool> parse_units(const Vector<RawUnit>& raw, const RigSlots& rigs,
+                           const MemoryLimit& memory, Units& object) const;
+  // Reads units. followers(first): which come after the first, once that has been read; none:
+  // it is broken.
+  template <class FollowersOf>
+  std::optional<Vector<RawUnit>> collect_units(const UnitHeader& first,
+                                               std::uint64_t max_memory_bytes,
+                                               const FollowersOf& followers);
   MemoryLimit limit_ahead(std::uint64_t max_memory_bytes) const;
   // Whether there is memory for the payload of a unit, in addition to what its access unit or
   // shared rig has taken.
@@ -96,12 +108,8 @@ class AccessUnitReader {
   // Whether a slice need not be read: the cut drops it.
   template <class Parser>
   Result<bool> is_dropped(const UnitHeader& unit, Parser& parser);
-  // Such a payload.
+  // Reads a payload for which there is memory.
   Result<Vector<std::uint8_t>> payload(const UnitHeader& unit, std::uint64_t taken_bytes);
-  // The slice unit that follows `unit`; none if another unit follows.
-  Result<std::optional<UnitHeader>> slice_after(const UnitHeader& unit);
-  Result<std::optional<UnitHeader>> unit_after(const UnitHeader& unit,
-                                               std::optional<UnitType> slice);
 
   UnitReader& units_;
   const StreamContext& context_;

@@ -15,6 +15,7 @@
 #include "decoder/codec/parse/sequence/parse_vertex_order.h"
 #include "decoder/codec/units/exceeded_limit.h"
 #include "decoder/codec/units/find_gof_index.h"
+#include "decoder/codec/units/unit_cursor.h"
 
 namespace rlpc {
 namespace {
@@ -294,19 +295,19 @@ Result<GofHeader> StreamReader::gof_header(const UnitHeader& unit) {
   return header;
 }
 
-// After the unit of a GOF. A frame unit may tell that the GOF ends early.
-Result<bool> StreamReader::skip_slices(UnitType type, std::uint32_t first_frame) {
-  while (units_.goes_on_after(offset_)) {
-    const auto unit = units_.header_at(offset_);
-    if (!unit) return unit.error();
-    if (unit->type() != type) break;
-    offset_ = unit->end();
+// Goes past the slice or frame units of a GOF. A frame unit may say that the GOF ends early.
+Result<bool> StreamReader::skip_slices(const UnitHeader& gof_unit, UnitType type,
+                                       std::uint32_t first_frame) {
+  UnitCursor cursor(units_, gof_unit);
+  for (;;) {
+    offset_ = cursor.end();
+    const auto more = cursor.advance({type});
+    if (!more || !*more) return more;
     if (type != UnitType::kFrame || !context_.header.open_end_flag) continue;
-    const auto end = gof_end(*unit);
+    const auto end = gof_end(cursor.unit());
     if (!end) return end.error();
     if (*end) frames_parsed_ = first_frame + **end;
   }
-  return true;
 }
 
 // The number of frames of the GOF, if the frame unit gives it.
@@ -384,7 +385,7 @@ Result<GofPlace> StreamReader::pass_gofs_to(std::uint32_t frame) {
     const std::uint32_t first_frame = frames_parsed_;
     go_past(**unit, gof->num_frames, (*unit)->end());
     if (const auto type = slice_type(gof->kind)) {
-      if (auto ok = skip_slices(*type, first_frame); !ok) return ok.error();
+      if (auto ok = skip_slices(**unit, *type, first_frame); !ok) return ok.error();
     }
     if (frame < frames_parsed_)
       return GofPlace{start, first_frame, frames_parsed_ - first_frame};

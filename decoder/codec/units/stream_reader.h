@@ -119,7 +119,8 @@ class StreamReader {
   Result<bool> check_limits(const SequenceHeaderPlaces& places);
   Result<bool> check_end(const UnitHeader& unit);
   Result<GofPlace> pass_gofs_to(std::uint32_t frame);
-  Result<bool> skip_slices(UnitType type, std::uint32_t first_frame);
+  Result<bool> skip_slices(const UnitHeader& gof_unit, UnitType type,
+                           std::uint32_t first_frame);
   Result<std::optional<std::uint32_t>> gof_end(const UnitHeader& unit);
   void remember_gof(const UnitHeader& unit);
 

@@ -9,6 +9,7 @@
 #include "common/codec/syntax/stream_format.h"
 #include "common/memory/owned.h"
 #include "decoder/codec/parse/parse_skinned_gof.h"
+#include "decoder/codec/units/unit_cursor.h"
 
 namespace rlpc {
 
@@ -116,17 +117,16 @@ Result<std::uint64_t> StreamRigs::skip(const UnitHeader& unit) {
   const auto bytes = units_.payload_start(unit, 1);
   if (!bytes) return bytes.error();
   BitReader r = units_.bits(unit, *bytes);
-  Entry entry{parse_rig_idx(r), unit.end(), nullptr, {}};
+  const std::uint32_t rig_idx = parse_rig_idx(r);
   if (r.error()) return *r.error();
-  while (entry.end < units_.size()) {
-    const auto next = units_.header_at(entry.end);
-    if (!next) return next.error();
-    if (next->type() != UnitType::kSlice) break;
-    entry.end = next->end();
+  UnitCursor cursor(units_, unit);
+  for (bool more = true; more;) {
+    const auto advanced = cursor.advance({UnitType::kSlice});
+    if (!advanced) return advanced.error();
+    more = *advanced;
   }
-  const std::uint64_t end = entry.end;
-  put(unit.offset, std::move(entry));
-  return end;
+  put(unit.offset, {rig_idx, cursor.end(), nullptr, {}});
+  return cursor.end();
 }
 
 }  // namespace rlpc
