@@ -70,7 +70,7 @@ class Spec:
         fence = None
         number = None
         function = None
-        for line_number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        for line_number, line in enumerate(cpp_source.read(path).splitlines(), 1):
             place = f"{relative}:{line_number}"
             heading = None
             if line.startswith("```"):
@@ -201,7 +201,7 @@ def uncited(root, spec):
     for path in sorted((root / PARSERS[0]).rglob("*.h")):
         if cpp_source.is_test(path):
             continue
-        lines = path.read_text(encoding="utf-8").splitlines()
+        lines = cpp_source.read(path).splitlines()
         opening = " ".join(lines[:next((i for i, l in enumerate(lines) if not l.startswith("//")), 0)])
         for index, line in enumerate(lines):
             match = _PARSER.match(line)
@@ -230,7 +230,7 @@ def check(root):
     parsers = {}
     used = set()
     for path in cpp_source.files(root, cpp_source.LAYERS):
-        text = path.read_text(encoding="utf-8")
+        text = cpp_source.read(path)
         relative = path.relative_to(root)
         complaints += check_start(spec, relative, text)
         complaints += check_references(spec, relative, text)

@@ -34,7 +34,7 @@ def check(root):
                   for folder in rooms.INTEGER_FOLDERS if not cpp_source.files(root, (folder,))]
     paths = covered(root)
     for path in paths:
-        text = path.read_text(encoding="utf-8")
+        text = cpp_source.read(path)
         for match in _FLOAT.finditer(cpp_source.code_only(text)):
             line = cpp_source.line_of(text, match.start())
             complaints.append(f"{path.relative_to(root)}:{line}: floating point: "

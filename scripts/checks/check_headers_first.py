@@ -20,7 +20,7 @@ def check(root):
             continue
         pairs += 1
         name = header.relative_to(root).as_posix()
-        first = _FIRST.search(cpp_source.without_comments(source.read_text(encoding="utf-8")))
+        first = _FIRST.search(cpp_source.without_comments(cpp_source.read(source)))
         if not first or first.group(1) != name:
             complaints.append(f'{source.relative_to(root)}: "{name}" is not included first')
     if pairs == 0:

@@ -31,7 +31,7 @@ def calls_of(code):
 def check(root):
     complaints, num_files = [], 0
     for path in cpp_source.files(root, cpp_source.LAYERS):
-        text = path.read_text(encoding="utf-8")
+        text = cpp_source.read(path)
         name = path.relative_to(root).as_posix()
         if cpp_source.is_test(path) or not (_LIBRARY.search(text) or "GltfJson" in text
                                             or "common/json/json.h" in text):

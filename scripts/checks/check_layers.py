@@ -78,11 +78,16 @@ def check_library(layer, relative, included):
     return None
 
 
-def check_file(root, path):
+@functools.lru_cache(maxsize=None)
+def file_complaints(root, path, text):
     relative = path.relative_to(root)
+    return [*check_includes(root, path, relative, text), *check_exceptions(relative, text)]
+
+
+def check_includes(root, path, relative, text):
     folder = relative.parent.as_posix()
     layer = folder if folder in rooms.LIBRARIES else relative.parts[0]
-    for line, bracket, included in includes(path.read_text(encoding="utf-8")):
+    for line, bracket, included in includes(text):
         if bracket == '"':
             complaint = check_ours(root, path, included)
         elif bracket == "<":
@@ -93,14 +98,12 @@ def check_file(root, path):
             yield f"{relative}:{line}: {complaint}"
 
 
-def check_exceptions(root, path):
+def check_exceptions(relative, text):
     """Errors are results (common/result.h); what `new` throws passes through."""
-    relative = path.relative_to(root)
-    if relative.parts[0] not in rooms.NEITHER_THROW_NOR_CATCH or cpp_source.is_test(path):
+    if relative.parts[0] not in rooms.NEITHER_THROW_NOR_CATCH or cpp_source.is_test(relative):
         return
     if rooms.MAY_CATCH & {relative.as_posix(), relative.parent.as_posix()}:
         return
-    text = path.read_text(encoding="utf-8")
     for match in re.finditer(r"\b(throw|try|catch)\b", cpp_source.code_only(text)):
         yield (f"{relative}:{cpp_source.line_of(text, match.start())}: "
                f"{relative.parts[0]}/ must neither throw nor catch (`{match.group(1)}`)")
@@ -126,7 +129,7 @@ def check_links(root):
     """A library is not linked where it must not be included."""
     for layer in ("common", "decoder", "encoder"):
         for path in sorted((root / layer).rglob("CMakeLists.txt")):
-            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            for number, line in enumerate(cpp_source.read(path).splitlines(), 1):
                 code = line.split("#")[0]
                 for other in re.findall(r"\brlpc(?:_|::)(decoder|encoder)\b", code):
                     if other not in ("common", layer):
@@ -134,6 +137,18 @@ def check_links(root):
                                f"{layer}/ must not link rlpc_{other}")
                 if "Eigen" in code and "Eigen" not in rooms.libraries_within(layer):
                     yield f"{path.relative_to(root)}:{number}: {layer}/ must not use Eigen"
+
+
+@functools.lru_cache(maxsize=None)
+def imports(text):
+    """(line, module) of all that a Python file imports."""
+    found = []
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            found += [(node.lineno, alias.name) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            found.append((node.lineno, node.module))
+    return found
 
 
 def check_python(root, folder, others):
@@ -146,17 +161,10 @@ def check_python(root, folder, others):
     if not paths:
         yield f"{folder}/ has no Python in it"
     for path in paths:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"), str(path))):
-            names = []
-            if isinstance(node, ast.Import):
-                names = [alias.name for alias in node.names]
-            elif isinstance(node, ast.ImportFrom) and node.level == 0:
-                names = [node.module]
-            for name in names:
-                top = name.split(".")[0]
-                if top not in sys.stdlib_module_names and top not in local:
-                    yield (f"{path.relative_to(root)}:{node.lineno}: "
-                           f"{folder} must not import {name}")
+        for line, name in imports(cpp_source.read(path)):
+            top = name.split(".")[0]
+            if top not in sys.stdlib_module_names and top not in local:
+                yield f"{path.relative_to(root)}:{line}: {folder} must not import {name}"
 
 
 def called_functions(root, places):
@@ -165,7 +173,7 @@ def called_functions(root, places):
     for place in places:
         headers = [root / place] if place.endswith(".h") else sorted((root / place).glob("*.h"))
         for header in headers:
-            code = cpp_source.code_only(header.read_text(encoding="utf-8"))
+            code = cpp_source.code_only(cpp_source.read(header))
             names |= set(_DECLARATION.findall(code))
     return names
 
@@ -180,7 +188,7 @@ def check_calls(root, folder, places):
     for path in sorted((root / folder).glob("*")):
         if path.suffix not in (".h", ".cpp") or cpp_source.is_test(path):
             continue
-        text = path.read_text(encoding="utf-8")
+        text = cpp_source.read(path)
         for match in call.finditer(cpp_source.code_only(text)):
             yield (f"{path.relative_to(root)}:{cpp_source.line_of(text, match.start())}: "
                    f"{folder}/ must not call {match.group(1)}( )")
@@ -221,7 +229,7 @@ def check_cycles(root, paths):
         folder = path.parent.relative_to(root).as_posix()
         if cpp_source.is_test(path) or rooms.layer_of(folder) == rooms.BOTH_SIDES:
             continue
-        text = path.read_text(encoding="utf-8")
+        text = cpp_source.read(path)
         targets = {included.rpartition("/")[0] for _, bracket, included in includes(text)
                    if bracket == '"' and rooms.allowed(folder, included, False)}
         graph.setdefault(folder, set()).update(targets - {folder})
@@ -235,8 +243,8 @@ def check(root):
     complaints = list(check_rooms(root, paths))
     known = [path for path in paths if path.parent.relative_to(root).as_posix() in rooms.ROOMS
              or path.relative_to(root).parts[0] == rooms.BOTH_SIDES]
-    complaints += [c for path in known for c in check_file(root, path)]
-    complaints += [c for path in known for c in check_exceptions(root, path)]
+    for path in known:
+        complaints += file_complaints(root, path, cpp_source.read(path))
     for folder, places in rooms.NOT_CALLED.items():
         complaints += check_calls(root, folder, places)
     headers = public_headers(root)

@@ -37,7 +37,7 @@ def prose(root):
     """(place, clause number, paragraph) of spec/*.md, without blocks."""
     for path in sorted((root / "spec").glob("*.md")):
         clause, fenced, lines = "", False, []
-        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines() + [""], 1):
+        for number, line in enumerate(cpp_source.read(path).splitlines() + [""], 1):
             heading = None if fenced else check_clauses._HEADING.match(line)
             if line.startswith("```"):
                 fenced = not fenced
@@ -92,14 +92,14 @@ def validator_code(root):
     """The code with which rlpcval checks streams, without comments; "" if there is none."""
     own = [path for path in sorted((root / "conformance" / "rlpcval").glob("validator*"))
            if path.suffix in (".h", ".cpp") and not cpp_source.is_test(path)]
-    text = "".join(cpp_source.without_comments(path.read_text(encoding="utf-8")) for path in own)
+    text = "".join(cpp_source.without_comments(cpp_source.read(path)) for path in own)
     if not own:
         return ""
     seen, waiting = set(), {"common/codec/bits/bit_reader.cpp"}
     while waiting:
         seen |= waiting
         paths = [root / name for name in sorted(waiting) if (root / name).exists()]
-        text += "".join(cpp_source.without_comments(path.read_text(encoding="utf-8"))
+        text += "".join(cpp_source.without_comments(cpp_source.read(path))
                         for path in paths)
         included = re.findall(r'#include "(decoder/codec/parse/[\w/]+)\.h"', text)
         waiting = {name + end for name in included for end in (".h", ".cpp")} - seen
@@ -115,7 +115,7 @@ def without_check(root, found):
 def broken_by_streams(root):
     """For each version in streams/: (its name, ids of the rules that its streams break)."""
     for version in sorted((root / "streams").glob("v*")):
-        sidecars = [json.loads(path.read_text(encoding="utf-8"))
+        sidecars = [json.loads(cpp_source.read(path))
                     for kind in ("reject", "either") for path in version.glob(f"{kind}/*/*.json")]
         if sidecars:
             yield version.name, {rule for sidecar in sidecars if not sidecar.get("superseded_by")
@@ -140,7 +140,7 @@ def check(root):
     if not (root / "spec").is_dir():
         return ["there is no spec/"], ""
     path = root / "spec" / "rules.json"
-    if not path.exists() or path.read_text(encoding="utf-8") != text_of(found):
+    if not path.exists() or cpp_source.read(path) != text_of(found):
         complaints.append("spec/rules.json is not up to date: scripts/rules")
     unchecked = [rule["rule"] for rule in found if rule["checked_by"] != DECODING]
     missing = without_check(root, found)

@@ -18,7 +18,7 @@ def check(root):
     places, complaints = {}, []
     for header in cpp_source.files(root, cpp_source.LAYERS, (".h",)):
         name = header.relative_to(root).as_posix()
-        for match in _TYPE.finditer(cpp_source.code_only(header.read_text(encoding="utf-8"))):
+        for match in _TYPE.finditer(cpp_source.code_only(cpp_source.read(header))):
             first = places.setdefault(match.group(1), name)
             if first != name:
                 complaints.append(f"{name}: {match.group(1)} is defined in {first}, too")

@@ -51,7 +51,7 @@ def is_rest(comment):
 def check(root):
     complaints, count = [], 0
     for path in cpp_source.files(root, (*cpp_source.LAYERS, "scripts")):
-        text = path.read_text(encoding="utf-8")
+        text = cpp_source.read(path)
         relative = path.relative_to(root)
         for line, comment in blocks(text):
             count += 1

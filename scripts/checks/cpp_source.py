@@ -27,6 +27,17 @@ def files(root, folders, suffixes=(".c", ".h", ".cpp")):
                   if path.suffix in suffixes and path.is_file())
 
 
+@functools.lru_cache(maxsize=None)
+def _contents(path, _modified, _size):
+    return path.read_text(encoding="utf-8")
+
+
+def read(path):
+    """The text of a file. Files that have not changed are read once."""
+    state = path.stat()
+    return _contents(path, state.st_mtime_ns, state.st_size)
+
+
 def is_test(path):
     return path.stem.endswith(("_test", "_fuzz", "_bench")) or path.parent.name == "testing"
 

@@ -28,21 +28,25 @@ COPIED = (*cpp_source.LAYERS, "spec")
 COPIED_FILES = ("scripts/cmake/install.cmake",)
 
 
-class RealTree(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.root = pathlib.Path(cls.folder.name)
-        for name in COPIED:
-            shutil.copytree(ROOT / name, cls.root / name)
-        for name in COPIED_FILES:
-            (cls.root / name).parent.mkdir(parents=True)
-            shutil.copy(ROOT / name, cls.root / name)
-        (cls.root / "streams").symlink_to(ROOT / "streams")
+_COPY = tempfile.TemporaryDirectory()
 
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
+
+def setUpModule():
+    root = pathlib.Path(_COPY.name)
+    for name in COPIED:
+        shutil.copytree(ROOT / name, root / name)
+    for name in COPIED_FILES:
+        (root / name).parent.mkdir(parents=True)
+        shutil.copy(ROOT / name, root / name)
+    (root / "streams").symlink_to(ROOT / "streams")
+
+
+def tearDownModule():
+    _COPY.cleanup()
+
+
+class RealTree(unittest.TestCase):
+    root = pathlib.Path(_COPY.name)
 
     @contextlib.contextmanager
     def planted(self, name, change):
