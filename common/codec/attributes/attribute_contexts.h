@@ -42,7 +42,7 @@ class SeamContexts {
     } else if (a + b == 3) {
       context = 3;
     }
-    if (!earlier_.seams.empty()) context += earlier_.seams[c] ? 12 : 6;
+    if (!earlier_.seams.empty()) context += earlier_.seams[c] ? 12U : 6U;
     if (earlier_.changes[c]) context += 18;
     return models_[context];
   }
