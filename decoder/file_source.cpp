@@ -74,7 +74,7 @@ Error cannot_open(int code) {
 bool begins_like_stream(std::span<const std::uint8_t> bytes) {
   std::size_t right = 0;
   for (std::size_t i = 0; i < std::min(bytes.size(), kSignature.size()); ++i) {
-    right += bytes[i] == kSignature[i] ? 1 : 0;
+    right += bytes[i] == kSignature[i] ? 1U : 0U;
   }
   return 2 * right >= kSignature.size();
 }

@@ -32,7 +32,7 @@ std::optional<Prefetch::Found> Prefetch::take(List& from, List::iterator which) 
   std::optional<Found> found;
   if (which->done.get() && which->gof) {
     found = Found{std::move(*which->gof), which->coded.end()};
-    for (const auto& rig : which->new_models) {
+    for (const auto& rig : which->new_rigs) {
       if (const ParsedRig* const parsed = parse(*rig)) {
         stream_.rigs().add(rig->offset, rig->end, *parsed);
       }
@@ -121,7 +121,7 @@ std::optional<Prefetch::Ahead> Prefetch::collect_at(const GofPlace& place) {
     for (const RawUnit& part : rig->coded) bytes_left -= part.payload.size();
     rig->before = ahead.rigs;
     slot = rig;
-    ahead.new_models.push_back(std::move(rig));
+    ahead.new_rigs.push_back(std::move(rig));
   }
   const auto unit = stream_.units().header_at(place.offset);
   if (!unit || unit->type() != UnitType::kGof) return std::nullopt;
@@ -134,7 +134,7 @@ std::optional<Prefetch::Ahead> Prefetch::collect_at(const GofPlace& place) {
 void Prefetch::hand_over_rigs() {
   if (gofs_.empty() || gofs_.front().coded.gof.first_frame != stream_.next_first_frame())
     return;
-  for (const auto& rig : gofs_.front().new_models) {
+  for (const auto& rig : gofs_.front().new_rigs) {
     const ParsedRig* parsed = parse(*rig);
     if (parsed == nullptr) return;
     stream_.rigs().add(rig->offset, rig->end, *parsed);
@@ -174,7 +174,7 @@ std::optional<Prefetch::Ahead> Prefetch::collect(std::uint64_t offset,
       return ahead;
     }
     if (unit->ancillary()) continue;
-    if (unit->type() != UnitType::kRig || ahead.new_models.size() == kMaxRigs) {
+    if (unit->type() != UnitType::kRig || ahead.new_rigs.size() == kMaxRigs) {
       return std::nullopt;
     }
     auto rig = collect_rig(*unit, bytes_left);
@@ -185,7 +185,7 @@ std::optional<Prefetch::Ahead> Prefetch::collect(std::uint64_t offset,
     BitReader r = units.bits(first.header, first.payload);
     ahead.rigs[parse_rig_idx(r)] = rig;
     offset = rig->end;
-    ahead.new_models.push_back(std::move(rig));
+    ahead.new_rigs.push_back(std::move(rig));
   }
   return std::nullopt;
 }

@@ -70,7 +70,7 @@ class Prefetch {
   struct Ahead {
     RawAccessUnit coded;
     // Since the GOF before; at most kMaxRigs, or the GOF is not prepared.
-    Vector<std::shared_ptr<RigAhead>> new_models;
+    Vector<std::shared_ptr<RigAhead>> new_rigs;
     Slots rigs;                      // those alive
     std::uint32_t first_wanted = 0;  // frame of the GOF
     std::optional<PreparedGof> gof;
