@@ -22,15 +22,14 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
       {{"auto", NormalChoice::kAuto},
        {"smoothing", NormalChoice::kSmoothing},
        {"exact", NormalChoice::kExact}},
-      "Normals: smoothing (records which faces share a normal; computed for "
-      "every frame), exact (normals of the first frame, which turn with the "
-      "surface), auto (default: for each normal, whichever is nearer to "
-      "INPUT in decoded frames)")
+      "Normals: smoothing (which faces share them; computed for every frame), exact (as in "
+      "the first frame; turn with the surface), auto (default: for each, whichever is nearer "
+      "to INPUT in decoded frames)")
       ->group(group);
   auto* const normal_bits = app.add_option(
       "--normal-bits", a.normal_bits,
-      "With exact normals: bits of each of their two coordinates (default: 8, with errors "
-      "up to 0.6 degrees)");
+      "Bits of each of the two coordinates of exact normals (default: 8, up to 0.6 degrees "
+      "off)");
   normal_bits->check(CLI::Range(2, 16))->option_text("N")->group(group);
   app.add_flag("--exact-attributes", a.exact,
                "Store numbers as 32-bit floats (texture coordinates as 1 - v, colours linear, "
@@ -57,8 +56,8 @@ void add_profile_options(CLI::App& app, EncodeCommandLine& line) {
       "predicted from decoded ones, High profile)")
       ->group(method);
   app.add_option("--components", line.options.settings.components,
-                 "Maximum components per GOF; Baseline: average per cluster, L of the paper "
-                 "(default: by rate and distortion)")
+                 "Maximum per GOF; Baseline: average per cluster, L of the paper (default: by "
+                 "rate and distortion)")
       ->check(CLI::Range(1, 1024))
       ->option_text("N")
       ->group(method);
