@@ -308,8 +308,8 @@ void add_more_options(CLI::App& app, EncodeCommandLine& line, const OutputOption
       ->group(kMore);
   o.settings.threads = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxEncoderThreads);
   app.add_option("--threads", o.settings.threads,
-                 "Threads, 1 to 256, fewer if memory is short; the stream does not depend on "
-                 "them (default: one per processor)")
+                 "Threads, 1 to 256, fewer if memory is short; they do not affect the stream "
+                 "(default: one per processor)")
       ->check(CLI::Range(std::uint32_t{1}, kMaxEncoderThreads))
       ->option_text("N")
       ->group(kMore);
