@@ -301,7 +301,7 @@ class ObjAttributes(AttributesTest):
         damaged.write_bytes(data)
         self.fails(1, "R-UNT-03", "rlpcdec", damaged, "-o", self.path("b.obj"))
         self.assertFalse(self.path("b.obj").exists())
-        self.fails(1, "the unit is left out, no frame needs it", "rlpcdec", damaged, "--conceal",
+        self.fails(1, "the unit is skipped, no frame needs it", "rlpcdec", damaged, "--conceal",
                    "--quiet", "-o", self.path("b.obj"))
         self.assertEqual(self.path("b.obj").read_bytes(), self.path("plain.obj").read_bytes())
 

@@ -29,7 +29,7 @@ class Axes(ToolsTest):
 
     def check_advice(self, said, mesh, *points):
         """--axes as advised gives the stream the axes of the mesh, which is its first frame."""
-        axes = re.search("; --axes (\\S+) gives the stream those of the mesh\n", said).group(1)
+        axes = re.search("; --axes (\\S+) turns it to the axes of the mesh\n", said).group(1)
         stream = self.path("turned.rlpc")
         said = self.ok("rlpcenc", mesh, *points, "--axes", axes, "--keep-order", "-o", stream).err
         self.assertEqual("", said)

@@ -33,7 +33,7 @@ class Clips(ToolsTest):
                    self.path("a.rlpc"), "--preset", "fast", "--clip", "Run:0-60")
         self.assertEqual(self.files(), [])
         self.encode(self.path("a.rlpc"), "--kg", 2)
-        self.fails(64, ["names no clips"], "rlpcdec", self.path("a.rlpc"), "-o",
+        self.fails(64, ["has no clips"], "rlpcdec", self.path("a.rlpc"), "-o",
                    self.path("b.pc2"), "--clip", "Run")
         self.encode(self.path("b.rlpc"), "--kg", 2, "--clip", "Walk:0-9")
         self.fails(64, ["expected one of `Walk`"], "rlpcdec", self.path("b.rlpc"), "-o",
@@ -47,11 +47,11 @@ class Clips(ToolsTest):
 
     def test_a_clip_may_end_after_an_open_ended_stream(self):
         stream = ROOT / "streams" / "v1.2" / "accept" / "CLP" / "CLP-0004a.rlpc"
-        self.fails(64, ["`all` ends with frame 16777215, but the stream with frame 2"], "rlpcdec",
-                   stream, "-o", self.path("a.pc2"), "--clip", "all")
+        self.fails(64, ["`all` ends with frame 16777215, but the stream ends with frame 2"],
+                   "rlpcdec", stream, "-o", self.path("a.pc2"), "--clip", "all")
         self.assertEqual(self.files(), [])
         beyond = ROOT / "streams" / "v1.2" / "accept" / "CLP" / "CLP-0005a.rlpc"
-        self.fails(64, ["`late` ends with frame 9, but the stream with frame 2"], "rlpcdec",
+        self.fails(64, ["`late` ends with frame 9, but the stream ends with frame 2"], "rlpcdec",
                    beyond, "-o", self.path("a.pc2"), "--clip", "late")
 
 

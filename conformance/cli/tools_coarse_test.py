@@ -107,7 +107,7 @@ class Coarse(CutTest):
         for entry in sizes:
             self.assertRegex(table, rf"\n +{entry['layers']} +{entry['vertices']} "
                                     rf"+{entry['triangles']}\n")
-        for layers, words in ((1, "lost slices were not verified"), (99, "hashes agree")):
+        for layers, words in ((1, "lack slices were not verified"), (99, "hashes agree")):
             said = self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.rlpd"), "--coarse",
                            layers).err
             size = sizes[min(layers, len(sizes)) - 1]

@@ -224,9 +224,9 @@ class Cutting(CutTest):
             self.assertIn(words, said)
         self.assertNotIn("nothing was dropped", said)
         self.assertIn("nothing was dropped", self.extract(path, "components=9999").out.decode())
-        self.assertIn("hashes of GOFs that lost slices were not verified",
+        self.assertIn("hashes of GOFs that lack slices were not verified",
                       self.ok("rlpcdec", path, "-o", self.path("a.rlpd"), "--max-components", 0).err)
-        self.assertIn("have no hashes",
+        self.assertIn("without hashes",
                       self.ok("rlpcdec", path, "-o", self.path("a.rlpd"), "--max-components", 9999).err)
 
     def test_as_many_groups_as_are_asked_for(self):

@@ -116,7 +116,7 @@ class Frames(ToolsTest):
                        self.path("a.rlpc"), "-v", "--kg", 0.5, "--gof", 20, "--profile", "high",
                        "--gof-kind", "inter")
         self.assertIn("3 inter GOFs, ", said.out.decode())
-        self.assertRegex(said.out.decode(), "[1-3] GOFs? of frames with pattern [a-z]")
+        self.assertRegex(said.out.decode(), "[1-3] inter GOFs? with pattern [a-z]")
 
     def test_the_pattern_is_chosen(self):
         options = ("--kg", 0.3, "--profile", "high", "--gof-kind", "inter")
@@ -174,7 +174,7 @@ class Frames(ToolsTest):
         stream, decoded, again = self.path("a.rlpc"), self.path("a.pc2"), self.path("b.rlpc")
         said = self.ok("rlpcenc", mesh, "--points", points, "-o", stream, "--lossless", 13,
                        *options).out.decode()
-        self.assertIn("lossless: all coordinates of all frames, once rounded to be on a grid", said)
+        self.assertIn("lossless: all coordinates of all frames, after rounding to a grid", said)
         info = self.ok("rlpcinfo", stream, "--json").json()
         self.assertIn(info["position_bits"], (12, 13))
         step = 2.0 ** info["grid_log2_step"]
@@ -182,7 +182,7 @@ class Frames(ToolsTest):
                 self.decoded(stream, decoded), "--max-error", 0.51 * 3 ** 0.5 * step)
         said = self.ok("rlpcenc", mesh, "--points", decoded, "-o", again, "--lossless",
                        *options).out.decode()
-        self.assertIn("lossless: all coordinates of all frames, which are on a grid of 2^", said)
+        self.assertIn("lossless: all coordinates of all frames, which lie on a grid of 2^", said)
         self.assertIn("KG error 0 %", said)
         twice = self.decoded(again, self.path("b.pc2"))
         self.assertEqual(decoded.read_bytes(), twice.read_bytes())

@@ -159,7 +159,7 @@ class Live(ToolsTest):
         self.assertEqual(done.code, 1)
         frames = (len(done.out) - HEADER) // len(self.frames[0])
         self.assertIn(frames, (8, 9))
-        self.fails(1, "is not known. Write .rlpd", "rlpcdec", cut, "-o", self.path("x.pc2"))
+        self.fails(1, "is unknown. Write .rlpd", "rlpcdec", cut, "-o", self.path("x.pc2"))
         self.assertFalse(self.path("x.pc2").exists())
 
     def units(self, data):
@@ -193,7 +193,7 @@ class Live(ToolsTest):
         self.fails(1, "R-UNT-03", "rlpcdec", self.write("x.rlpc", damaged), "-o", self.path("x.pc2"))
         for threads in ((), ("--threads", 3)):
             said, found = self.conceal(damaged, threads)
-            self.assertIn("frames 13 to 19 are lost, and show the one before them", said)
+            self.assertIn("frames 13 to 19 are lost, and repeat the one before", said)
             self.assertEqual(found, good[:13] + 7 * [good[12]] + good[20:])
             said, found = self.conceal(data[:start] + data[end:], threads)  # lost on the way
             self.assertIn("R-FRM-03", said)

@@ -60,7 +60,7 @@ class Losses(ToolsTest):
             self.assertEqual(int(found[2]), worst)
             self.assertAlmostEqual(float(found[1]), degrees[worst], delta=1)
         live = self.ok("rlpcenc", self.path("n1"), "-o", self.path("a.rlpc"), "--low-delay", "--profile", "high")
-        self.assertIn("compares the normals of the first frame alone", live.err)
+        self.assertIn("compares only the normals of the first frame", live.err)
 
     def test_exact_texture_coordinates_are_written_as_they_were(self):
         draw = random.Random(2)

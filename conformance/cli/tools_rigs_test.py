@@ -58,7 +58,7 @@ class Rigs(ToolsTest):
         self.assertEqual(sum(info["bits"].values()), 8 * info["bytes"])
         said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
         for words in ("shared rigs: 1, with ", "skinned GOFs with shared rigs: 3, with ",
-                      "shared rig 0, of 3 GOFs: ",
+                      "shared rig 0, used by 3 GOFs: ",
                       "frames 20 to 39: tracks of shared rig 0 in "):
             self.assertIn(words, said)
         page = self.path("a.html")

@@ -42,7 +42,7 @@ class Page(unittest.TestCase):
     def test_rows_of_others_stay(self):
         self.written(("killed", "A-0001a"), ("survived", ""), ("survived", ""))
         text = self.written(None, None, ("diagnosed", "B-0001a"), ("killed", "C-0001a"))
-        self.assertIn("3 of 3 mutants noticed, 1 of them only by the rule that is reported; "
+        self.assertIn("3 of 3 mutants detected, 1 of them only by the rule that is reported; "
                       "1 equivalent; 2 streams.", text)
         self.assertTrue(text.endswith("| first | what first is | killed | A-0001a |\n"
                                       "| equal | what equal is | the same |  |\n"

@@ -48,32 +48,32 @@ constexpr const char* kDetails = R"(A is the original, B the decoded animation. 
   mesh.obj with --points-a/-b     triangles from the mesh, frames from the point
                                   cache
   clip.pc2, clip.mdd              the same, with the triangles of clip.obj (or
-                                  .ply, .off) beside it
+                                  .ply, .off) next to it
   walk.glb, walk.gltf             a glTF 2.0 scene; for the original, repeat the
                                   --animation, --fps and --no-weld of rlpcenc
   folder/, f_%04d.obj, 'f_*.obj'  one OBJ (PLY, OFF) file per frame, in numeric
                                   order
   mesh.obj                        one frame; if the other side has several and
-                                  mesh.pc2 (.mdd) is beside it, that cache is
-                                  read as well, and the report says so
+                                  mesh.pc2 (.mdd) is next to it, that cache is
+                                  read as well, and the report mentions it
 
 The vertices of a stream are in the order of the input only if it was encoded
 with --keep-order. Otherwise pass the file that rlpcenc --order-map wrote.
 
 Measures
   KG error  100 * ||A - B|| / ||A - E(A)||, per cent, in two norms. E(A) is the
-            mean vertex of each frame of A: this is the KG error of rlpcenc and
-            of --max-kg. Or it is one mean of all vertices of all frames: this
-            is the norm of most published figures, and the smaller number. The
-            ratio of the two is a constant of A
+            mean vertex of each frame of A in the KG error of rlpcenc and of
+            --max-kg, or one mean of all vertices of all frames in most
+            published figures, which gives the smaller number. The ratio of the
+            two is a constant of A
   RMS       root mean square distance of vertices, in units of A
   PSNR      20 log10(diagonal / RMS), the diagonal of the bounding box of all
             frames of A
   PSNR of Ramanathan, Kassim and Tan 2008, 3.2
             -10 log10 of the squared error over the vertices that moved,
             relative to the largest displacement; mean over the frames
-  STED      spatio-temporal edge difference of Vasa and Skala 2011, as their
-            program has it: with ed = (l - l') / l of an edge, the deviation of
+  STED      spatio-temporal edge difference of Vasa and Skala 2011, as in their
+            program: with ed = (l - l') / l of an edge, the deviation of
             ed, weighted by l, from its mean over the edges that meet in a
             vertex or in its neighbours; mean over vertices and frames (spatial
             part). With s = sqrt(step^2 + dt^2) of each step of a vertex from
@@ -145,7 +145,7 @@ void add_options(CLI::App& app, Options& o) {
       ->option_text("PERCENT")
       ->group(output);
   app.add_option("--max-error", o.max_error,
-                 "Exit code 1 if the error of a vertex is larger, in units of A")
+                 "Exit code 1 if the largest vertex error is larger, in units of A")
       ->check(kBound)
       ->option_text("DISTANCE")
       ->group(output);
@@ -166,10 +166,10 @@ void add_options(CLI::App& app, Options& o) {
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group(more);
-  app.add_option("--axes-a,--axes", o.axes, "As rlpcenc --axes, for A")
+  app.add_option("--axes-a,--axes", o.axes, "Axes of A, as for rlpcenc --axes")
       ->option_text("X,Y,Z")
       ->group(more);
-  app.add_option("--fps", o.fps, "Frame rate of glTF files (default: as rlpcenc)")
+  app.add_option("--fps", o.fps, "Frame rate of glTF files (default: as in rlpcenc)")
       ->option_text("RATE")
       ->group(more);
   app.add_flag_callback(
@@ -302,7 +302,8 @@ void print_report(const rlpc::ComparisonPair& pair, const Rate& rate,
   std::printf("  largest   %.6g (%.4f %% of the diagonal), frame %u, vertex %u\n", m.max_error,
               m.max_error_percent, m.max_error_frame, m.max_error_vertex);
   if (m.max_error > 0 && d.is_rounding) {
-    std::printf("  rounding  all of it: every number of B is the float nearest to that of A\n");
+    std::printf(
+        "  rounding  is the only error: each number of B is the float nearest to A's\n");
   }
   if (m.max_error > 0) {
     std::printf("  PSNR      %.2f dB of the diagonal; %.2f dB, Ramanathan's, mean of frames\n",
@@ -315,7 +316,8 @@ void print_report(const rlpc::ComparisonPair& pair, const Rate& rate,
     std::printf("  STED      %.6g (spatial part %.6g, temporal part %.6g)\n", s.sted,
                 s.sted_spatial, s.sted_temporal);
   } else {
-    std::printf("  STED      none: it divides by the size of the first frame, a point\n");
+    std::printf(
+        "  STED      none: it divides by the size of the first frame, which is a point\n");
   }
   std::printf("  ring      %.6g, edge difference in one ring (spatial %.6g, temporal %.6g)\n",
               s.ring_difference, s.ring_spatial, s.ring_temporal);
@@ -337,7 +339,7 @@ int check_gates(const Options& o, const rlpc::Metrics& m) {
 }
 
 constexpr const char* kWrittenOver =
-    ": is an input or the other output, too; choose another name";
+    ": is also an input or the other output; choose another name";
 
 std::optional<std::string> written_over(const Options& o,
                                         const std::vector<std::string>& read) {

@@ -34,18 +34,18 @@ constexpr const char* kExamples = R"(Examples
 
 constexpr const char* kDetails =
     R"(A finding names the rule of the specification, its clause and the position, and
-explains what it means, its likely cause, and what to do. After an error the
+explains its meaning, its likely cause, and what to do. After an error the
 validator continues where it can; findings that may be consequences of an
 earlier one are marked.
 
 Severities
   error         the stream does not conform
   unsupported   another version, profile or level; the contents were not checked
-  warning       legal, but surely not meant (W-...)
+  warning       legal, but surely unintended (W-...)
 
 Exit code: 0 conforming; 1 errors; 2 unsupported; 3 not checked completely
 because of --max-memory; 4 not readable; 64 wrong usage. For several streams,
-the first of 1, 4, 3 and 2 that occurs.)";
+the first of 1, 4, 3 and 2 that applies.)";
 
 struct Options {
   std::vector<std::string> inputs;
@@ -127,7 +127,7 @@ rlpc::ExitCode validate(const Options& o, const std::string& path,
 int explain(const std::string& id) {
   const rlpc::RuleExplanation* e = rlpc::explain(id);
   if (e == nullptr) {
-    rlpc::print_message("rlpcval", "--explain: there is no rule or warning `" + id + "`");
+    rlpc::print_message("rlpcval", "--explain: unknown rule or warning `" + id + "`");
     return rlpc::kExitUsage;
   }
   std::printf("%s (clause %s)\n  %s\n  Likely cause: %s\n  What to do: %s\n", e->id, e->clause,
@@ -147,7 +147,7 @@ int main(int argc, char** argv) try {
     return rlpc::after_standard_output("rlpcval", explain(options.explain), rlpc::kExitIo);
   }
   if (options.inputs.empty()) {
-    rlpc::print_message("rlpcval", "give a stream to validate, or --help");
+    rlpc::print_message("rlpcval", "expected a stream to validate, or --help");
     return rlpc::kExitUsage;
   }
   nlohmann::ordered_json streams = nlohmann::ordered_json::array();

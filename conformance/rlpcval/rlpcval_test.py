@@ -127,7 +127,7 @@ class Validation(ToolsTest):
                          ["conforming", "not conforming", "unsupported"])
 
     def test_usage(self):
-        self.fails(64, "give a stream", "rlpcval")
+        self.fails(64, "expected a stream", "rlpcval")
         self.fails(64, "", "rlpcval", self.path("a.rlpc"), "--unknown")
         self.fails(64, "R-XYZ-01", "rlpcval", "--explain", "R-XYZ-01")
         for words in (b"Examples", b"Exit code", b"--strict-warnings"):

@@ -296,7 +296,7 @@ void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
       gof_.access_unit->header().kind == GofKind::kInter) {
     findings_.unchecked(
         "R-HSH-03", "unit_type", unit.offset * 8,
-        "GOFs of frames of an open-ended stream have hashes in their frame units");
+        "inter GOFs of an open-ended stream have hashes in their frame units");
     return;
   }
   const auto hash = parse_gof_hash(r, gof_.num_frames);

@@ -131,7 +131,7 @@ class Blender(unittest.TestCase):
 
         # Without --axes, the commands do what the page says, too.
         z_up = self.shell("MDD", lambda text: text.replace(" --axes x,z,-y", ""))
-        self.assertIn("--axes x,z,-y gives the stream", z_up)
+        self.assertIn("--axes x,z,-y turns it", z_up)
         self.shell("The original object")
         as_they_are = self.scripts_of("The original object",
                                       lambda text: re.sub(r"cache\.forward_axis.*\n", "", text))

@@ -2,16 +2,16 @@
 """Code and specification cite each other correctly.
 
 Citations    "// 8.4.2 Title", "clause 8.4.2", "Annex B" and "Table 9-1" in comments of C++ code
-             exist in spec/; a title after a number at the start of a comment is that of the
-             heading, or names a function of that clause, as in "// 6.3.1 sequence_header( )".
+             exist in spec/; a title after a number at the start of a comment equals the heading,
+             or names a function of that clause, as in "// 6.3.1 sequence_header( )".
 Parsers      each parse_*( ) of the headers of decoder/codec/parse/ cites its clause.
 Rules        every rule id in C++ code or pseudo-code, like R-HDR-03, is defined once in spec/,
              as {R-HDR-03}.
 Elements     every syntax element of the `rlpc` blocks (name = u(1), name = ue(), name = ae(...))
              is a string literal in exactly one file of decoder/codec/parse/ (or the reader of units),
-             or read in exactly one other file of decoder/, and none reads others. An element
-             that several functions of the specification read may be in as many files. Blocks of
-             the clause of the parsing process describe bins, not elements.
+             or read in exactly one other file of decoder/, and no file reads other elements. An
+             element that several functions of the specification read may be in as many files.
+             Blocks of the clause of the parsing process describe bins, not elements.
 """
 
 import collections

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Every constant of the encoder's search says what it is: tuned, or fixed.
+"""Every constant of the encoder's search is marked as tuned or fixed.
 
 In the sources of the search (scripts/studies/tuning/tuned.py), each constant that is declared with a
-number has a comment `tuned: REASON` or `fixed: REASON` behind or above it, and no number with a
-fraction stands anywhere else, but for those of plain formulas (halves, bits of a byte, per cent).
-Tuned constants have different names, and encoder/codec/kinds/skinned/search/README.md has a row for each,
-and for no other.
+number has a comment `tuned: REASON` or `fixed: REASON` behind or above it. No other number has a
+fraction, except in plain formulas (halves, bits of a byte, per cent). Tuned constants have different
+names, and encoder/codec/kinds/skinned/search/README.md has a row for each, and for no other.
 """
 
 import re

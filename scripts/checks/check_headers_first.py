@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Every source includes the header of its name first: then that header compiles alone.
+"""Every source includes the header of its name first, which shows that it compiles alone.
 
-The headers without such a source are compiled by themselves (checks.headers).
+Headers without such a source are compiled by themselves (checks.headers).
 """
 
 import re

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""The tables of Annex D are the names of the pseudo-code in spec/*.md.
+"""The tables of Annex D list the names of the pseudo-code in spec/*.md.
 
 They list each function with the clause that defines it; each syntax element with the clauses of its
 syntax, and those of its semantics, where it is in bold; and each other variable with the clauses
-that assign to it, to an element of it, or append to it, and with those that read it.
+that assign to it, to an element of it, or append to it, and with the clauses that read it.
 
-  --write    brings the tables up to date
+  --write    update the tables
 """
 
 import ast

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Installs a build into a temporary prefix, and uses it from outside: builds the programs of
-consumer/ against it, with find_package(rlpc), and with pkg-config where there is one, and runs
-them on an animation of streams/inputs. Also: what is installed is what scripts/quickstart builds."""
+consumer/ against it, with find_package(rlpc), and with pkg-config if it is installed, and runs
+them on an animation of streams/inputs. Also checks that exactly what scripts/quickstart builds is
+installed."""
 
 import argparse
 import array

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""The layer rules: which folder may include, import and link which.
+"""Folders include, import and link only what they may.
 
-Each folder includes what scripts/checks/rooms.py allows, and no two include each other, over
-however many others: common neither side, encoder and decoder never each other, parsing nothing that
-reconstructs, readers and writers of mesh files nothing of coding. Eigen stays in the encoder and the
-writer of glTF; common and decoder neither throw nor catch; the specification interpreter and the
-judge are plain Python.
+Each folder includes only what scripts/checks/rooms.py allows, and no two include each other,
+directly or through others: common includes neither side, encoder and decoder never include each
+other, parsing includes nothing that reconstructs, readers and writers of mesh files nothing of
+coding. Eigen stays in the encoder and the writer of glTF; common and decoder neither throw nor
+catch; the specification interpreter and the judge are plain Python.
 """
 
 import ast

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Files, relative links and functions named in pages (*.md) exist.
 
-A name is checked if it begins with one of the project's folders. It may be a glob; `X` stands
-for a version that does not exist yet (streams/vX.Y). Tables that scripts write are between marks.
+A name is checked if it begins with one of the project's folders. It may be a glob; `X` denotes
+a version that does not exist yet (streams/vX.Y). Tables that scripts write are between marks.
 """
 
 import re

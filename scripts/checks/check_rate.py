@@ -3,11 +3,11 @@
 
 Encodes the bundled animations with fixed settings and compares the bytes with
 streams/inputs/encoder_bytes.json. Fails if one stream grows by more than 0.5 %, or all of them by
-more than 0.2 % in the geometric mean; a target that is missed, and a stream without an entry or an
-entry without a stream, fail as well. Streams may get smaller; --write then keeps the gain.
+more than 0.2 % in the geometric mean; also fails for a missed target, a stream without an entry, or
+an entry without a stream. Streams may get smaller; --write then records the gain.
 
   --bin FOLDER   folder of rlpcenc
-  --write        replace the table by what the encoder does now; the commit says why
+  --write        replace the table by the current results; the commit states the reason
 """
 
 import argparse

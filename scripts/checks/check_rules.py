@@ -2,8 +2,8 @@
 """spec/rules.json lists the rules that spec/*.md defines.
 
 Every rule id in braces ends a sentence that begins with "It is a requirement of bitstream
-conformance that" (a stream that breaks it is invalid) or "A stream is unsupported unless". Of each
-rule the list has: id, clause, effect, sentence, and which process of the pseudo-code checks it:
+conformance that" (a stream that breaks it is invalid) or "A stream is unsupported unless". The list
+states id, clause, effect and sentence of each rule, and which process of the pseudo-code checks it:
 decoding in order, only decoding of attributes, only random access, or none.
 
 Every rule is checked by rlpcval: its id is a string in the code of the validator, in the parsers
@@ -12,7 +12,7 @@ that the validator includes, or in the readers of bits and sections that these s
 Every rule is broken by a stream of some version in streams/, or by one that a decoder may refuse;
 and sidecars name no other rules.
 
-  --write    brings spec/rules.json up to date
+  --write    update spec/rules.json
 """
 
 import json

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""What is released does not change.
+"""Released streams, and the bytes of the encoder, do not change.
 
-* Every file of streams/vX.Y/SHA256SUMS has the digest that stands there, and spec/versions.md
-  calls just those versions and supplements released that have one. SHA256SUMS.sidecars has those of
-  all sidecars, which hold the expected output.
-* The encoder writes for streams/inputs what it wrote before: streams/inputs/encoder_digests.json
-  has the digests by version of the project (CMakeLists.txt). They may change with the version, or
-  with an erratum (spec/errata.md) that the new entry names. While CHANGELOG.md calls a version
+* Every file listed in streams/vX.Y/SHA256SUMS has the digest in that file, and spec/versions.md
+  marks exactly the versions and supplements with such a file as released. SHA256SUMS.sidecars lists
+  the digests of all sidecars, which contain the expected output.
+* The encoder writes the same bytes for streams/inputs as before: streams/inputs/encoder_digests.json
+  lists the digests by version of the project (CMakeLists.txt). They may change with the version, or
+  with an erratum (spec/errata.md) that the new entry names. While CHANGELOG.md marks a version as
   unreleased, its entry may be replaced: each change of the encoder's bytes is made on purpose.
 
-  --bin FOLDER   where rlpcenc is; without it, the encoder is not run
-  --write        add an entry for the encoder as it is now, or replace that of an unreleased version
+  --bin FOLDER   folder of rlpcenc; without it, the encoder is not run
+  --write        add an entry for the current encoder, or replace that of an unreleased version
   --erratum E    with --write: the erratum that explains the change
 """
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Annex E states the lifetimes of the variables of the pseudo-code in spec/*.md.
 
-Table E-1 has each variable that a function assigns to, in a row whose function gives it a value;
-Table E-2 each syntax element that a function uses other than those that read it from the stream,
+Table E-1 lists each variable that a function assigns to, in a row whose function gives it a value;
+Table E-2 lists each syntax element that is used outside the functions that read it from the stream,
 in a row with the function that reads it. The rows of Table E-2 are written by hand, except the
 clauses of their functions and the column of elements.
 
-  --write    brings these up to date
+  --write    update these
 """
 
 import ast

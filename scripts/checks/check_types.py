@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """No two headers define a type of the same name.
 
-All are in one namespace, and programs link encoder and decoder: of two classes with one name, the
-linker takes the destructor of either for both.
+All types are in one namespace, and programs link encoder and decoder: the linker would use the
+destructor of one of two classes with the same name for both.
 """
 
 import re

@@ -4,8 +4,7 @@
 * A comment of C++ or JavaScript, at the start of its block or behind code, does not begin as the
   rest of a sentence whose subject stands above or before it: "Of a GOF.", "Those in use", "As
   parsed".
-* Comments, pages, messages and help do not use the words of WORDS: each names what to write
-  instead.
+* Comments, pages, messages and help do not use the words of WORDS, which lists replacements.
 """
 
 import re

@@ -9,7 +9,7 @@ namespace rlpc {
 namespace {
 
 std::string no_such_clip(const std::string& name, std::span<const Clip> clips) {
-  if (clips.empty()) return "--clip: the stream names no clips; use --frames";
+  if (clips.empty()) return "--clip: the stream has no clips; use --frames";
   constexpr std::size_t kMost = 20;
   std::string names;
   for (std::size_t i = 0; i < clips.size() && i < kMost; ++i) {
@@ -43,7 +43,8 @@ Result<FrameSpan, std::string> choose_frames(const std::string& frames, const st
   // The clips of an open-ended stream are written before its last frame is known.
   if (found->last_frame() >= num_frames) {
     return "--clip: `" + clip + "` ends with frame " + std::to_string(found->last_frame()) +
-           ", but the stream with frame " + std::to_string(num_frames - 1) + "; use --frames";
+           ", but the stream ends with frame " + std::to_string(num_frames - 1) +
+           "; use --frames";
   }
   return FrameSpan{found->first_frame, found->last_frame()};
 }

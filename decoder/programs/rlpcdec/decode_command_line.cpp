@@ -10,7 +10,7 @@ namespace rlpc {
 namespace {
 
 constexpr const char* kExamples = R"(OUT is one of
-  clip.pc2, clip.mdd      point cache, with clip.obj beside it for the triangles
+  clip.pc2, clip.mdd      point cache, and clip.obj for the triangles
   clip.glb                glTF: bones, or a morph target for each frame (--as)
   out/frame_%04d.obj      one OBJ (or PLY) file per frame; also ####, out/
   clip.rlpd               exact integer positions, for conformance
@@ -24,43 +24,42 @@ Examples
   rlpcdec walk.rlpc --html walk.html)";
 
 constexpr const char* kDetails =
-    R"(A folder OUT gets OBJ files, with --format ply PLY files. With -o -, the format
-is needed: rlpd or glb; of a single frame also obj or ply. From an open-ended
-stream (rlpcenc --low-delay), each frame is written as soon as it has arrived;
-with --format pc2 -o -, without a mesh and with a frame count of 0.
+    R"(A folder OUT receives OBJ files, or PLY files with --format ply. With -o -, the
+format is required: rlpd or glb; for a single frame also obj or ply. From an
+open-ended stream (rlpcenc --low-delay), each frame is written as soon as it has
+arrived; --format pc2 -o - then writes no mesh, and a frame count of 0.
 
-OBJ files hold texture coordinates, normals, colours of vertices, materials and
-parts; a .mtl file and images beside them have the materials. PLY files hold
-texture coordinates, normals and colours, of vertices only: vertices become
-several, one for each distinct combination of these. Normals are those of each
-frame. With --coarse, there is none of this.
+OBJ files contain texture coordinates, normals, colours of vertices, materials
+and parts; the materials are in a .mtl file and images next to them. PLY files
+contain texture coordinates, normals and colours of vertices only: a vertex is
+split into one for each distinct combination of these. Normals are computed for
+each frame. With --coarse, none of these are written.
 
 --html writes a page that contains the stream and plays it in a browser, without
 a network. scripts/player builds the player that it needs.
 
 Fewer components or layers are faster to decode (not Baseline). The result is
-that of decoding after rlpcinfo --extract components=K,layers=L,temporal=N.
-Cluster GOFs have no slices: they are decoded whole.
+the same as after rlpcinfo --extract components=K,layers=L,temporal=N. Cluster
+GOFs have no slices: they are decoded whole.
 
-In a .glb file, each clip is an animation. --as skin makes the bones of the
-stream, or its clusters, joints of a skin; what these leave becomes morph
-targets: enough for the file to differ from the stream by no more than the
-stream's own error, which rlpcdec estimates from its quantiser steps; and more,
-down to half of that, while each lowers the size of the file times its error
-(the stream's included). rlpcdec reports the difference. A vertex keeps its four
-largest influences. Where groups of frames have bones of their own, those of
-most frames are fitted to the others. A stream whose frames are predicted from
-frames has no bones.
---as auto writes a morph target for each frame instead where there are no bones;
-and, as long as these are at most the 2,000 that viewers hold, where they take
-fewer bytes, or where bones would leave more than the stream's own error: N
-times that error is worth 4 * N times the bytes. Otherwise it writes bones. The
+In a .glb file, each clip is an animation. --as skin writes the bones of the
+stream, or its clusters, as joints of a skin, and the residual as morph targets:
+enough for the file to differ from the stream by at most the stream's own error,
+which rlpcdec estimates from its quantiser steps; more are added, down to half
+that error, while each one reduces size * error (the stream's error included).
+rlpcdec reports the difference. A vertex keeps its four largest influences. If
+GOFs have different bones, the bones that serve most frames are fitted to the
+other frames. Streams of inter GOFs have no bones.
+--as auto writes bones, with two exceptions. It writes a morph target for each
+frame if there are no bones; or if these are at most 2,000, as many as viewers
+hold, and either take fewer bytes or bones leave a larger error than the
+stream's own: an error N times larger justifies up to 4 * N times the bytes. The
 decoded frames are exact with --as morph only; all frames of a skin are held in
 memory.
 
 With --coarse, vertex layers are removed from the mesh, the finest first: each
 vertex leaves a hole, which larger triangles fill. The other vertices keep their
-positions. Slices that are not needed for these are not decoded (Main and High
+positions. Slices that these do not need are not decoded (Main and High
 profiles). rlpcinfo --coarse lists the coarse meshes of a stream.
 
 For the conformance judge (conformance/VALIDATE.md)
@@ -118,7 +117,7 @@ void add_format_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs)
       ->option_text("A-B")
       ->excludes(outputs.page)
       ->group(kOutput);
-  app.add_option("--clip", o.clip, "This part only; rlpcinfo lists them")
+  app.add_option("--clip", o.clip, "This clip only; rlpcinfo lists clips")
       ->check([](const std::string& name) {
         return name.empty() ? std::string("the name is empty; rlpcinfo lists the clips") : "";
       })
@@ -137,8 +136,8 @@ void add_format_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs)
       ->excludes(outputs.page)
       ->group(kOutput);
   app.add_flag("--conceal", o.conceals,
-               "After damage, go on with the next intact group of frames, and leave damaged "
-               "attributes out; the last frame before stands for those that are lost")
+               "After damage, continue with the next intact group of frames, and leave out "
+               "damaged attributes; lost frames repeat the last good one")
       ->excludes(outputs.page)
       ->group(kOutput);
   app.add_flag("--no-hashes", o.no_hashes, "Do not verify the hashes of the stream")
@@ -153,7 +152,7 @@ void add_format_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs)
       ->needs(outputs.page)
       ->group(kPage);
   app.add_option("--player", o.html.player,
-                 "With --html: page of the player (default: as installed, or as built)")
+                 "With --html: page of the player (default: the one installed or built)")
       ->option_text("PAGE")
       ->needs(outputs.page)
       ->group(kPage);
@@ -164,16 +163,16 @@ void add_gltf_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs) {
       {"auto", GltfMotion::kAuto}, {"skin", GltfMotion::kSkin}, {"morph", GltfMotion::kMorph}};
   app.add_option_function<std::string>(
          "--as", [&o](const std::string& word) { o.motion = kMotions.at(word); },
-         "skin: bones, and morph targets for what they leave; morph: each frame exactly, as a "
-         "morph target; auto (default): bones, unless frames are smaller, or bones not near "
-         "enough")
+         "skin: bones, and morph targets for the residual; morph: each frame exactly, as a "
+         "morph target; auto (default): bones, unless frames are smaller or bones too "
+         "inexact")
       ->check(CLI::IsMember(kMotions).description(""))
       ->option_text("WORD")
       ->excludes(outputs.verify)
       ->excludes(outputs.page)
       ->group(kGltf);
   app.add_option("--max-targets", o.max_targets,
-                 "Morph targets beside bones, at most (default: 256); 0 for bones alone")
+                 "Maximum morph targets in addition to bones (default: 256); 0: bones alone")
       ->check(CLI::Range(0U, 65535U))
       ->option_text("N")
       ->excludes(outputs.verify)
@@ -183,23 +182,22 @@ void add_gltf_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs) {
 
 void add_limit_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs) {
   app.add_option("--max-components", o.decoder.cut.max_components,
-                 "Of each skinned GOF, only the leading component groups with at "
-                 "most K trajectories in total")
+                 "Only the leading component groups of each skinned GOF, with at most K "
+                 "trajectories in total")
       ->check(CLI::Range(0U, SliceCut::kAll - 1))
       ->option_text("K")
       ->excludes(outputs.verify)
       ->excludes(outputs.page)
       ->group(kLess);
   app.add_option("--max-layers", o.decoder.cut.max_layers,
-                 "Only the coarsest layer groups with at most L vertex layers in "
-                 "total")
+                 "Only the coarsest layer groups, with at most L vertex layers in total")
       ->check(CLI::Range(1U, SliceCut::kAll - 1))
       ->option_text("L")
       ->excludes(outputs.verify)
       ->excludes(outputs.page)
       ->group(kLess);
   app.add_option("--max-temporal-layers", o.decoder.cut.max_temporal_layers,
-                 "Only the first N temporal layers; the frames between are interpolated")
+                 "Only the first N temporal layers; other frames are interpolated")
       ->check(CLI::Range(1U, SliceCut::kAll - 1))
       ->option_text("N")
       ->excludes(outputs.verify)
@@ -207,8 +205,8 @@ void add_limit_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs) 
       ->group(kLess);
 
   app.add_option("--coarse", o.decoder.coarse_layers,
-                 "Decode a mesh with only the coarsest L vertex layers, and triangles between "
-                 "them: 1 for the fewest vertices; the whole mesh if it has no more layers")
+                 "Decode a mesh of only the coarsest L vertex layers (1: the fewest vertices), "
+                 "or the whole mesh if it has at most L")
       ->check(CLI::Range(1U, SliceCut::kAll - 1))
       ->option_text("L")
       ->excludes(outputs.verify)
@@ -238,8 +236,8 @@ void add_limit_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs) 
       ->excludes(outputs.verify)
       ->group(kLimits);
   app.add_option("--threads", o.decoder.threads,
-                 "1 to 256, each with memory for a GOF and four frames (default: one per "
-                 "processor)")
+                 "Number of threads, 1 to 256, each with memory for a GOF and four frames "
+                 "(default: one per processor)")
       ->check(CLI::Range(1, 256))
       ->option_text("N")
       ->group(kLimits);
@@ -281,14 +279,15 @@ std::string find_usage_error(const CLI::App& app, const DecodeCommand& command) 
     if (written) return *written + kWrittenOver;
   }
   if (command.ascii && sink_format(command.output, command.format) != SinkFormat::kPly) {
-    return "--ascii is for PLY files, which " + command.output + " is not";
+    return "--ascii is for PLY files only, and " + command.output + " is not one";
   }
   for (const char* const option : {"--as", "--max-targets"}) {
     if (app.get_option(option)->count() == 0 ||
         sink_format(command.output, command.format) == SinkFormat::kGlb) {
       continue;
     }
-    return std::string(option) + " is for .glb files, which " + command.output + " is not";
+    return std::string(option) + " is for .glb files only, and " + command.output +
+           " is not one";
   }
   return "";
 }

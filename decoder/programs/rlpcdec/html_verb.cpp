@@ -34,7 +34,7 @@ int check_whole(const std::string& input, Decoder& decoder) {
   std::vector<std::int32_t> positions(3 * std::size_t{decoder.header().num_vertices});
   for (;;) {
     const auto more = decoder.next_frame(positions);
-    if (!more) return complain(input + " (the page shows which frames)", more.error());
+    if (!more) return complain(input + " (the page marks the damaged frames)", more.error());
     if (!*more) return kExitDone;
   }
 }
@@ -67,10 +67,9 @@ int write_html(const HtmlRequest& request, ByteSource& stream) {
     const auto other = look_at(*reference, request.decoder);
     if (!other) return complain(request.reference, other.error());
     if (!same_mesh(*decoder, *other)) {
-      return complain(request.reference + ": not a stream of the same frames, vertices and " +
-                          "triangles as " + request.input +
-                          ", in the same order; encode both " +
-                          "from the same mesh, both with --keep-order or both without",
+      return complain(request.reference + ": differs from " + request.input +
+                          " in its frames, vertices or triangles, or in their order; encode " +
+                          "both from the same mesh, both with --keep-order or both without",
                       kExitUsage);
     }
   }

@@ -64,10 +64,10 @@ int complain_of_loss(const Options& o, const rlpc::Error& error, std::uint32_t f
   if (end && *end == first) {
     lost = "; no frame is lost";
   } else if (end && *end == first + 1) {
-    lost = "; frame " + std::to_string(first) + " is lost, and shows the one before it";
+    lost = "; frame " + std::to_string(first) + " is lost, and repeats the one before";
   } else if (end) {
     lost = "; frames " + std::to_string(first) + " to " + std::to_string(*end - 1) +
-           " are lost, and show the one before them";
+           " are lost, and repeat the one before";
   }
   return complain(rlpc::stream_message(o.input, error, o.decoder.limits) + lost,
                   rlpc::exit_code(error.code));
@@ -83,16 +83,15 @@ struct FrameCounts {
 
 std::string hashes_text(const Options& o, const rlpc::Decoder& decoder,
                         const FrameCounts& frames) {
-  if (decoder.was_cut()) return ", cut; hashes of GOFs that lost slices were not verified";
+  if (decoder.was_cut()) return ", cut; hashes of GOFs that lack slices were not verified";
   if (!o.decoder.verify_hashes) return "";
   if (frames.compared == frames.decoded) return ", hashes agree";
   if (frames.compared > 0) {
     return ", hashes of " + std::to_string(frames.compared) +
            " of them agree; the others have none";
   }
-  return o.is_part()
-             ? ", not verified: no hash covers these frames alone (rlpcenc --hash frame)"
-             : ", which have no hashes";
+  return o.is_part() ? ", not verified: no hash covers only these frames (rlpcenc --hash frame)"
+                     : ", without hashes";
 }
 
 bool is_coarse(const Options& o) { return o.decoder.coarse_layers != rlpc::SliceCut::kAll; }
@@ -247,8 +246,8 @@ int decode(const Options& o) {
   if (!num_frames) {
     return complain(
         rlpc::name_of_input(o.input) +
-            ": an open-ended stream that has been cut off: the number of its frames is "
-            "not known. Write .rlpd, OBJ or PLY files, and all frames",
+            ": an open-ended stream that has been cut off, so its number of frames is "
+            "unknown. Write .rlpd, OBJ or PLY files, and all frames",
         rlpc::kExitInvalid);
   }
   const auto span = rlpc::choose_frames(o.frames, o.clip, decoder->clips(), *num_frames);
@@ -293,7 +292,7 @@ int decode(const Options& o) {
   report(o, *decoder, frames, sink.get());
   for (const rlpc::Error& damage : decoder->damaged_units()) {
     frames.loss_code = complain(rlpc::stream_message(o.input, damage, o.decoder.limits) +
-                                    "; the unit is left out, no frame needs it",
+                                    "; the unit is skipped, no frame needs it",
                                 rlpc::exit_code(damage.code));
   }
   return frames.loss_code != rlpc::kExitDone ? frames.loss_code : attributes_code;

@@ -109,7 +109,8 @@ void print_cut(const ExtractOptions& o, const std::string& name, const SliceTota
               before.num_slices, after.bytes, before.bytes);
   if (after.num_trajectories == 0 && before.num_trajectories > 0 && o.cut.max_components > 0) {
     std::printf(
-        "    no group has %u trajectories or fewer: only bones and rest shape are kept\n",
+        "    the first group has more than %u trajectories: only bones and rest shape are "
+        "kept\n",
         o.cut.max_components);
   }
   if (too_many_layers(o, after)) {

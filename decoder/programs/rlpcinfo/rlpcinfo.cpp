@@ -33,23 +33,23 @@ namespace {
 
 constexpr const char* kExamples = R"(Examples
   rlpcinfo walk.rlpc              contents, and bits per part
-  rlpcinfo walk.rlpc --gofs       the same for each GOF and slice
+  rlpcinfo walk.rlpc --gofs       also for each GOF and slice
   rlpcinfo walk.rlpc --html walk.html
   rlpcinfo walk.rlpc --pictures walk --frame 40
-  rlpcinfo walk.rlpc --coarse     and the coarse meshes of rlpcdec --coarse
+  rlpcinfo walk.rlpc --coarse     also the coarse meshes of rlpcdec --coarse
   rlpcinfo walk.rlpc --extract components=12,layers=5 -o small.rlpc)";
 
 constexpr const char* kDetails =
     R"(--extract writes the stream without the slices of finer detail (not Baseline),
-without re-encoding. Of each skinned GOF and shared rig, it keeps the leading
-component groups with at most K trajectories in total (0: only bones and rest
-shape), and the coarsest layer groups with at most L vertex layers in total
-(always at least the first).
-Of the temporal layers of a GOF, it keeps the first N; all frames are left.
-Cluster GOFs have no slices: they are kept whole. --gofs shows possible cuts.
+without re-encoding. It keeps the leading component groups of each skinned GOF
+and shared rig, with at most K trajectories in total (0: only bones and rest
+shape), the coarsest layer groups, with at most L vertex layers in total (always
+at least the first), and the first N temporal layers of each GOF; all frames
+remain. Cluster GOFs have no slices: they are kept whole. --gofs shows possible
+cuts.
 
-Pictures show the mesh from two sides, with the cluster or bone of each vertex
-in colour, and with its vertex layer. Beyond 10000 triangles (2000 in a page),
+Pictures show the mesh from two sides, coloured by the cluster, bone or patch of
+each vertex, and by its vertex layer. Above 10000 triangles (2000 in a page),
 they show a coarse mesh.
 
 --trace prints bit position, name and value of every syntax element.
@@ -221,8 +221,8 @@ CLI::Option* add_options(CLI::App& app, Options& o) {
   auto* json = app.add_flag("--json", o.json, "JSON on standard output")->group(report);
   auto* gofs = app.add_flag("--gofs", o.gofs, "Also list each GOF and slice")->group(report);
   auto* coarse = app.add_flag("--coarse", o.coarse,
-                              "Also list the coarse meshes of rlpcdec --coarse; with --html, "
-                              "with pictures")
+                              "Also list the coarse meshes of rlpcdec --coarse; --html adds "
+                              "pictures")
                      ->group(report);
   auto* html = app.add_option("--html", o.html, "Also write a page with charts and pictures")
                    ->option_text("FILE")
@@ -232,11 +232,10 @@ CLI::Option* add_options(CLI::App& app, Options& o) {
                                   "of vertex layers, to this folder")
                        ->option_text("FOLDER")
                        ->group(report);
-  auto* frame =
-      app.add_option("--frame", o.frame,
-                     "The frame in pictures, with its GOF, counted from 0 (default: 0)")
-          ->option_text("F")
-          ->group(report);
+  auto* frame = app.add_option("--frame", o.frame,
+                               "Frame that pictures show, with its GOF, from 0 (default: 0)")
+                    ->option_text("F")
+                    ->group(report);
   auto* trace =
       app.add_flag("--trace", o.trace, "List every syntax element instead")->group(report);
   app.add_option(
@@ -246,7 +245,7 @@ CLI::Option* add_options(CLI::App& app, Options& o) {
       ->transform(CLI::AsSizeValue(true))
       ->option_text("SIZE")
       ->group(report);
-  auto* extract = app.add_option("--extract", o.extract, "Keep only coarser slices")
+  auto* extract = app.add_option("--extract", o.extract, "Write a stream without fine slices")
                       ->option_text("components=K,layers=L,temporal=N")
                       ->group(cut);
   auto* output = app.add_option("-o,--output", o.output,

@@ -15,7 +15,7 @@ OutputResult<PictureFolder> PictureFolder::create(const std::string& path,
   if (!folder.has_filename()) folder = folder.parent_path();  // "out/"
   std::error_code ec;
   if (fs::exists(folder, ec) && !fs::is_directory(folder, ec)) {
-    return OutputError{path + ": is a file; a folder of pictures cannot go there"};
+    return OutputError{path + ": is a file; pictures need a folder, choose another name"};
   }
   auto temporary = TemporaryFolder::create(folder.string());
   if (!temporary) return temporary.error();

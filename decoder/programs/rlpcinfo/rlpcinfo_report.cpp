@@ -240,7 +240,7 @@ std::vector<std::string> figures_of(const SlicedSummary& summary) {
 }
 
 void print_rig(const RigSummary& rig) {
-  std::printf("\n  shared rig %zu, of %s: %s in %" PRIu64 " bytes; slices in bytes\n",
+  std::printf("\n  shared rig %zu, used by %s: %s in %" PRIu64 " bytes; slices in bytes\n",
               rig.number, counted(rig.num_gofs, {"GOF", "GOFs"}).c_str(),
               figures_of(rig)[0].c_str(), rig.bytes);
   print_slices(rig, "rig to here");

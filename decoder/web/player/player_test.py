@@ -87,12 +87,12 @@ class Writing(InFolder):
         other = STREAMS / "v1.0" / "accept" / "CON" / "CON-0001a.rlpc"
         done, out = self.page(self.stream, "--reference", other)
         self.assertEqual(done.returncode, 64)
-        self.assertIn(b"not a stream of the same frames", done.stderr)
+        self.assertIn(b"in its frames, vertices or triangles", done.stderr)
         self.assertFalse(out.exists())
         kept = self.encode("kept.rlpc", "--keep-order")
         done, out = self.page(self.stream, "--reference", kept)
         self.assertEqual(done.returncode, 64)
-        self.assertIn(b"in the same order; encode both", done.stderr)
+        self.assertIn(b"or in their order; encode both", done.stderr)
 
     def test_without_a_player(self):
         tool = self.folder / "elsewhere" / "rlpcdec"

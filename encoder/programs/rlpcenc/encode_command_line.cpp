@@ -46,25 +46,25 @@ INPUT is one of
   clip.rlpd                     decoded positions
   -                             any single file, from standard input
 
-Files are frames in the order of the one number in which their names differ:
--5 before -4, 1.25 between 1 and 2, 9 before 10. Digits after a point are a
-fraction (t=0.041667) or a counter (v003.0995), whichever gives equal steps.
-Names that can be read in two orders are an error, and so are names that do not
-fit, such as that of a rest pose; a pattern chooses. A hyphen after a word is a
-separator before whole numbers and times from 0 on (walk-1, walk-0.04).
-Polygons are split into triangles as in the first frame.
+Files are ordered by the one number in which their names differ: -5 before -4,
+1.25 between 1 and 2, 9 before 10. Digits after a point are a fraction
+(t=0.041667) or a counter (v003.0995), whichever gives equal steps. Names that
+can be read in two orders are an error, and so are names that do not fit, such
+as the name of a rest pose; a pattern resolves both. A hyphen after a word is a
+separator before whole numbers and times from 0 on (walk-1, walk-0.04). Polygons
+are split into triangles as in the first frame.
 
-The format is taken from the extension, otherwise detected from the contents.
+The format is determined by the extension, or by the contents if that fails.
 
 Texture coordinates, normals, colours and materials of OBJ and PLY files are
-kept, of .mtl files with their PNG and JPEG images (map_Kd, map_Ke, norm) if
-these are in the folder of the mesh or below. A sequence has those of its first
-file, a point cache those of its mesh. Vertices are not split along seams.
+kept: from the first file of a sequence, or from the mesh of a point cache. PNG
+and JPEG images of .mtl files (map_Kd, map_Ke, norm) are kept if they are in the
+folder of the mesh or below. Vertices are not split at seams.
 
 Qualities
   word               KG error   mean normal deviation
   preview            1 %        2 to 9 degrees: dents are visible
-  good (default)     0.1 %      0.2 to 1.3 degrees: hardly visible
+  good (default)     0.1 %      0.2 to 1.3 degrees: barely visible
   fine               0.03 %     below 0.4 degrees
   visually-lossless  0.01 %     below 0.13 degrees: half a step of an 8-bit
                                 display
@@ -72,41 +72,41 @@ Qualities
 The KG error (Karni and Gotsman) is the RMS distance between original and
 decoded vertices, divided by the RMS distance of the vertices from the centre of
 their frame. rlpcenc warns if the RMS error exceeds 3 % of the median edge
-length, a mean normal deviation of about one degree.
+length, which is a mean normal deviation of about one degree.
 
---lossless restores every coordinate as the 32-bit float that it is (-0 as 0),
-or that is nearest to the number in INPUT: rlpcenc reports how far these are
-apart. --lossless BITS restores it once rounded to the finest grid, of a step
-that is a power of two, on which the box needs at most BITS bits. The order of
-vertices and triangles is not kept (--keep-order keeps that of vertices), nor is
-anything else in INPUT. Sampled glTF is kept as sampled.
+--lossless restores every coordinate as a 32-bit float (-0 as 0), exactly or as
+the float nearest to the number in INPUT: rlpcenc reports the largest distance.
+--lossless BITS first rounds coordinates to the finest grid, with a step that is
+a power of two, on which the box needs at most BITS bits. The order of vertices
+and triangles is not kept (--keep-order keeps that of vertices), nor is anything
+else in INPUT. Sampled glTF is kept as sampled.
 
 Errors are measured from the numbers in INPUT to decoded positions, which are
 32-bit floats: far from the origin, these may be too coarse for --max-error.
-rlpcenc decodes what it has written, and compares it with INPUT, before OUT gets
-its name: if they do not agree, it fails, and there is no OUT.
+rlpcenc decodes its output and compares it with INPUT before OUT appears: if
+they do not agree, it fails and leaves no OUT.
 
 --dry-run encodes animations of up to 1024 frames (or eight GOFs, if that is
-more) and reports the exact size. Of longer ones it encodes eight sections and
+more) and reports the exact size. For longer ones it encodes eight sections and
 reports an estimate ("about").
 
---low-delay reads RLPD from INPUT -, or PC2 from --points -, up to its end,
-whatever its number of frames says, and writes each frame before it waits for
-the next. The stream is then open-ended: rlpcdec writes its frames as they
-arrive. If the input fails, OUT ends with the frame before. Quality is --kg,
---max-error or --lossless BITS; the KG error is that of the whole, and met
+--low-delay reads RLPD from INPUT -, or PC2 from --points -, to its end,
+whatever frame count it declares, and writes each frame before it waits for the
+next. The stream is then open-ended: rlpcdec writes its frames as they arrive.
+If the input fails, OUT ends with the frame before. Quality is --kg, --max-error
+or --lossless BITS; the KG error is that of all frames together, and is met
 approximately.
 
---frame-pattern FRAME<REFERENCES, ... lists the frames of a period in the order
-in which they are coded, counted from 1, with one or two references each, and
-@DEPTH if they are deeper than these; 0 is the last frame of the period before.
-dyadic:4 is 4<0,2<0+4@1,1<0+2@2,3<2+4@2. --temporal-layers N makes layers of the
-N - 1 greatest depths, --layer-groups N of vertex layers: frames and details
-that rlpcinfo --extract can remove.
+--frame-pattern FRAME<REFERENCES, ... lists the frames of a period in coding
+order, counted from 1, with one or two references each, and @DEPTH for a frame
+deeper than its references; 0 is the last frame of the period before. dyadic:4
+is 4<0,2<0+4@1,1<0+2@2,3<2+4@2. --temporal-layers N makes layers of the N - 1
+greatest depths, --layer-groups N makes groups of vertex layers: frames and
+details that rlpcinfo --extract can remove.
 
 --up-axis and --metres-per-unit become upAxis and metersPerUnit of the metadata,
-as USD names them; from glTF, Y and 1 are noted anyway. They say what the
-positions of OUT are; --axes turns them.
+their USD names; for glTF, Y and 1 are recorded by default. They describe the
+positions of OUT; --axes turns these.
 
 Exit code: 0 done; 1 input or output failed; 2 written, but the target was not
 reached; 64 wrong usage.)";
@@ -166,7 +166,7 @@ void add_input_options(CLI::App& app, EncodeCommandLine& line) {
       ->group(kInput);
   app.add_option(
          "--fps", line.fps,
-         "Frame rate: 25, 29.97 or 30000/1001 (default: from INPUT, of glTF that of its keys; "
+         "Frame rate: 25, 29.97 or 30000/1001 (default: from INPUT, for glTF from its keys; "
          "otherwise 30)")
       ->option_text("RATE")
       ->group(kInput);
@@ -256,15 +256,16 @@ void add_more_options(CLI::App& app, EncodeCommandLine& line, const OutputOption
                "(High profile)")
       ->excludes(output.dry_run)
       ->group(kMore);
-  app.add_option("--box", line.box,
-                 "With --low-delay: bounds of all frames, smallest x,y,z and largest (default: "
-                 "from INPUT; 8 times the size of the first frame if it is a pipe)")
+  app.add_option(
+         "--box", line.box,
+         "With --low-delay: bounds of all frames, smallest x,y,z, then largest (default: "
+         "from INPUT; from a pipe, 8 times the size of the first frame)")
       ->delimiter(',')
       ->expected(6)
       ->option_text("X,Y,Z,X,Y,Z")
       ->group(kMore);
   app.add_option("--order-map", o.order_map,
-                 "Write, per decoded vertex, its index in INPUT (glTF: after welding)")
+                 "Write the index in INPUT of each decoded vertex (glTF: after welding)")
       ->option_text("FILE")
       ->excludes(output.dry_run)
       ->excludes(output.keep_order)
@@ -277,16 +278,16 @@ void add_more_options(CLI::App& app, EncodeCommandLine& line, const OutputOption
   app.add_flag("--verify", o.settings.check_rules,
                "Also check OUT against all rules of the specification, as rlpcval does")
       ->group(kMore);
-  app.add_option("--metadata", line.metadata_path, "JSON file to carry along")
+  app.add_option("--metadata", line.metadata_path, "JSON file to store in the stream")
       ->check(CLI::ExistingFile)
       ->option_text("FILE")
       ->group(kMore);
-  app.add_option("--up-axis", line.up_axis, "Note in the metadata which axis is up: y or z")
+  app.add_option("--up-axis", line.up_axis, "Record in the metadata which axis is up: y or z")
       ->check(CLI::IsMember({"y", "z"}).description(""))
       ->option_text("WORD")
       ->group(kMore);
   app.add_option("--metres-per-unit", line.metres_per_unit,
-                 "Note in the metadata how long a unit is: 0.01 for centimetres")
+                 "Record in the metadata the length of a unit: 0.01 for centimetres")
       ->check(kAboveZero)
       ->option_text("METRES")
       ->group(kMore);
@@ -307,7 +308,7 @@ void add_more_options(CLI::App& app, EncodeCommandLine& line, const OutputOption
       ->group(kMore);
   o.settings.threads = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxEncoderThreads);
   app.add_option("--threads", o.settings.threads,
-                 "1 to 256, fewer if memory is short; the stream does not depend on it "
+                 "Threads, 1 to 256, fewer if memory is short; they do not affect the stream "
                  "(default: one per processor)")
       ->check(CLI::Range(std::uint32_t{1}, kMaxEncoderThreads))
       ->option_text("N")

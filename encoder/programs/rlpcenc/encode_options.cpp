@@ -134,8 +134,8 @@ std::optional<std::string> check_places(const EncodeCommandLine& line) {
   if (line.inputs.size() > 1 &&
       (!o.input.points.empty() ||
        std::find(line.inputs.begin(), line.inputs.end(), "-") != line.inputs.end())) {
-    return "several INPUTs are the mesh files of one sequence; they take neither --points nor "
-           "-";
+    return "several INPUTs are the mesh files of one sequence; they cannot be combined with "
+           "--points or -";
   }
   const std::string standard = " cannot both go to standard output";
   if (o.output == "-" && o.json) return "--json and the stream" + standard;
@@ -151,7 +151,7 @@ std::optional<std::string> check_places(const EncodeCommandLine& line) {
     }
   }
   if (OutputFile::is_same_file(o.output, o.order_map)) {
-    return o.output + ": is given for the stream and for --order-map; choose two names";
+    return o.output + ": is both the stream and --order-map; choose two names";
   }
   if (format_of_extension(o.output) != nullptr) {
     return o.output + ": the output is an RLPC stream; choose a name such as " +
@@ -195,7 +195,7 @@ std::optional<InputError> note_units(const EncodeCommandLine& line) {
     if (!is_given) return std::nullopt;
     return InputError{
         line.metadata_path +
-        ": expected a JSON object, for --up-axis and --metres-per-unit to add to"};
+        ": expected a JSON object, to which --up-axis and --metres-per-unit can add"};
   }
   if (is_known && !json->contains("upAxis")) (*json)["upAxis"] = "Y";
   if (is_known && !json->contains("metersPerUnit")) (*json)["metersPerUnit"] = 1;

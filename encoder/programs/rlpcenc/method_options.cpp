@@ -8,32 +8,32 @@ namespace {
 void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
   const std::string group = "Texture coordinates, normals, colours, materials";
   AttributeSettings& a = line.options.settings.attributes;
-  app.add_flag("--no-attributes", a.dropped, "Positions and triangles alone")->group(group);
+  app.add_flag("--no-attributes", a.dropped, "Positions and triangles only")->group(group);
   add_off_switch(app, "--no-textures", line.options.input.textures,
                  "Leave images out of the materials")
       ->group(group);
   auto* const uv_bits =
       app.add_option("--uv-bits", a.uv_bits,
                      "Texture coordinates in steps of 1/2^N of an image (default: 12); coarser "
-                     "where they repeat a small one");
+                     "where they repeat a small image");
   uv_bits->check(CLI::Range(1, 16))->option_text("N")->group(group);
-  add_choice<NormalChoice>(app, "--normals", a.normals,
-                           {{"auto", NormalChoice::kAuto},
-                            {"smoothing", NormalChoice::kSmoothing},
-                            {"exact", NormalChoice::kExact}},
-                           "Normals: smoothing (which faces share them: computed for every "
-                           "frame), exact (those of the first frame, which turn with the "
-                           "surface), auto (for each, what is nearer to INPUT in decoded "
-                           "frames, default)")
+  add_choice<NormalChoice>(
+      app, "--normals", a.normals,
+      {{"auto", NormalChoice::kAuto},
+       {"smoothing", NormalChoice::kSmoothing},
+       {"exact", NormalChoice::kExact}},
+      "Normals: smoothing (which faces share them; computed for every frame), exact (as in "
+      "the first frame; turn with the surface), auto (default: for each, whichever is nearer "
+      "to INPUT in decoded frames)")
       ->group(group);
   auto* const normal_bits = app.add_option(
       "--normal-bits", a.normal_bits,
-      "With exact normals: bits of each of their two coordinates (default: 8, up to 0.6 "
-      "degrees off)");
+      "Bits of each of the two coordinates of exact normals (default: 8, up to 0.6 degrees "
+      "off)");
   normal_bits->check(CLI::Range(2, 16))->option_text("N")->group(group);
   app.add_flag("--exact-attributes", a.exact,
-               "Numbers as 32-bit floats (texture coordinates as 1 - v, colours linear, as "
-               "in glTF), normals with 16 bits per coordinate")
+               "Store numbers as 32-bit floats (texture coordinates as 1 - v, colours linear, "
+               "as in glTF), normals with 16 bits per coordinate")
       ->excludes(uv_bits)
       ->excludes(normal_bits)
       ->group(group);
@@ -52,8 +52,8 @@ void add_profile_options(CLI::App& app, EncodeCommandLine& line) {
        {"cluster", KindChoice::kCluster},
        {"skinned", KindChoice::kSkinned},
        {"inter", KindChoice::kInter}},
-      "Kind of GOF: auto (the cheapest for each, default), cluster, skinned, "
-      "inter (each frame from decoded ones, High profile)")
+      "Kind of GOFs: auto (default: the cheapest for each), cluster, skinned, inter (frames "
+      "predicted from decoded ones, High profile)")
       ->group(method);
   app.add_option("--components", line.options.settings.components,
                  "Maximum per GOF; Baseline: average per cluster, L of the paper (default: by "
@@ -68,22 +68,21 @@ void add_profile_options(CLI::App& app, EncodeCommandLine& line) {
        {"lloyd", PartitionMethod::kLloyd},
        {"spectral", PartitionMethod::kSpectral},
        {"motion", PartitionMethod::kMotion}},
-      "What makes clusters of the Baseline profile and patches of the High profile: seeds "
-      "(motion relative to them; default of Baseline), kway (few edges between equal parts), "
-      "lloyd (near vertices), spectral (concave creases), motion (affine; default of High)")
+      "Method that makes clusters of the Baseline profile and patches of the High profile: "
+      "seeds (motion relative to seeds; default of Baseline), kway (few edges between equal "
+      "parts), lloyd (near vertices), spectral (concave creases), motion (affine; default of "
+      "High)")
       ->group(method);
 }
 
 void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
-  const std::string frames = "inter GOFs, High profile";
+  const std::string frames = "Inter GOFs, High profile";
   InterTools& t = line.options.settings.inter;
   app.add_option(
          "--frame-pattern", line.frame_pattern,
-         "What frames are predicted from: previous (the one before), first (of the GOF), "
-         "dyadic (those around, in periods of 2, 4, ... 64: dyadic:16), entries (see below), "
-         "or "
-         "auto (default: the cheapest of previous, first, dyadic:16 and dyadic:64 for each "
-         "GOF)")
+         "References of frames: previous (frame), first (of the GOF), dyadic (the frames "
+         "around, in periods of 2, 4, ... 64: dyadic:16), entries (see below), or auto "
+         "(default: the cheapest of previous, first, dyadic:16 and dyadic:64 for each GOF)")
       ->option_text("WORD")
       ->group(frames);
   add_choice<InterWeights>(
@@ -91,20 +90,19 @@ void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
       {{"learned", InterWeights::kLearned},
        {"geometry", InterWeights::kGeometry},
        {"plain", InterWeights::kPlain}},
-      "Weights of prediction: learned (from the frames before, default), geometry (from the "
-      "first; larger, faster), plain (equal ones, as in the SSLPC paper)")
+      "Prediction weights: learned (default, from the frames before), geometry (from the "
+      "first frame; larger, faster), plain (equal, as in the SSLPC paper)")
       ->group(frames);
   app.add_option(
          "--patches", t.patches,
-         "Parts of the mesh that can each follow one affine motion in a frame, in place "
-         "of their neighbours; 0: none (default: the cheapest of 0, 16 and 48 for each "
-         "GOF)")
+         "Number of parts of the mesh that can be predicted by one affine motion per frame; "
+         "0: none (default: the cheapest of 0, 16 and 48 for each GOF)")
       ->check(CLI::Range(0, 1024))
       ->option_text("N")
       ->group(frames);
   app.add_option("--frames-per-unit", t.frames_per_unit,
-                 "Frames that share a unit of the stream, at most (default: some 4 kB of "
-                 "them; always one with --low-delay or several --layer-groups)")
+                 "Maximum frames that share a unit of the stream (default: about 4 kB; always "
+                 "one with --low-delay or several --layer-groups)")
       ->check(CLI::Range(1, 65536))
       ->option_text("N")
       ->group(frames);
@@ -122,13 +120,13 @@ void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
   };
   add_number("--clusters", t.clusters, 1, 1024,
              "Clusters per GOF, N of the paper (default: chosen)");
-  add_number("--qu", t.qu, 2, 20, "Bits of eigenshapes; with --qc, instead of a quality");
+  add_number("--qu", t.qu, 2, 20, "Bits of eigenshapes; with --qc, replaces a quality");
   add_number("--qc", t.qc, 2, 20, "Bits of coefficients");
   add_number(
       "--qdelta", t.qdelta, 2, 24,
-      "Bits of seed positions, for the mean bounding box of the frames (default: from the "
+      "Bits of seed positions, over the mean bounding box of the frames (default: from the "
       "quality)");
-  add_off_switch(app, "--no-rdo", t.rdo, "The same number of components in every cluster")
+  add_off_switch(app, "--no-rdo", t.rdo, "Use the same number of components in every cluster")
       ->group(baseline);
   add_choice<bool>(app, "--rdo-rate", t.rate_in_vectors, {{"bits", false}, {"vectors", true}},
                    "With --components, the budget that clusters share: bits (default), or "
@@ -144,7 +142,7 @@ void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
                         {"first", SeedMode::kFirst},
                         {"triangle", SeedMode::kTriangle},
                         {"spread", SeedMode::kSpread}},
-                       "Vertices that carry local coordinate frames: first or triangle (the "
+                       "Vertices that define local coordinate frames: first or triangle (the "
                        "first or the most stable triangle at a vertex), spread (distant "
                        "vertices of the cluster), auto (default: spread; with --qu, the "
                        "cheapest)")
@@ -154,7 +152,7 @@ void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
       {{"auto", MotionMeasure::kAuto},
        {"squared", MotionMeasure::kSquared},
        {"plain", MotionMeasure::kPlain}},
-      "Of motion relative to seeds, the sum of: squared or plain distances "
+      "Measure of motion relative to seeds: sum of squared or plain distances "
       "(default: squared; with --qu, the cheaper)")
       ->group(baseline);
 }
@@ -179,10 +177,12 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
        {"parallelogram", Prediction::kParallelogram},
        {"parallelograms", Prediction::kParallelograms},
        {"layers", Prediction::kLayers}},
-      "Of spatial factors: auto (default), none, parallelogram, parallelograms (all), layers")
+      "Prediction of spatial factors: auto (default), none, parallelogram, parallelograms "
+      "(all), layers")
       ->group(tools);
-  add_choice<bool>(app, "--basis-steps", t.cobra_steps, {{"equal", false}, {"cobra", true}},
-                   "Quantiser steps of temporal factors: equal (distortion, default), cobra")
+  add_choice<bool>(
+      app, "--basis-steps", t.cobra_steps, {{"equal", false}, {"cobra", true}},
+      "Quantiser steps of temporal factors: equal (default: equal distortion), cobra")
       ->group(tools);
   add_off_switch(app, "--no-geometry-weights", t.geometry_weights,
                  "Predict with plain weights, which do not depend on the rest shape")
@@ -190,13 +190,12 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
   add_off_switch(app, "--no-outer-ring", t.outer_ring, "Predict from the inner ring only")
       ->group(tools);
   add_off_switch(app, "--no-layer-steps", t.layer_steps,
-                 "The same quantiser steps in all layers")
+                 "Use the same quantiser steps in all layers")
       ->group(tools);
   add_off_switch(app, "--no-temporal-weights", t.temporal_weights,
-                 "Only the fixed predictors of temporal factors")
+                 "Use only the fixed predictors of temporal factors")
       ->group(tools);
-  add_off_switch(app, "--no-clusters", t.clusters,
-                 "Bones in all GOFs, even where clusters cost less")
+  add_off_switch(app, "--no-clusters", t.clusters, "No cluster GOFs, even where they cost less")
       ->group(tools);
   app.add_option("--adaptive-factors", t.adaptive_factors,
                  "Trajectories that adapt prediction weights, High profile (default: all)")
@@ -209,10 +208,9 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
        {"prediction", RestTools::kPrediction},
        {"order", RestTools::kOrder},
        {"counterparts", RestTools::kCounterparts}},
-      "Coding of rest positions and first frames, High profile: auto (default, all of these), "
-      "prediction (as "
-      "other values), order (also in an order of their own), counterparts (also from parts of "
-      "the same shape)")
+      "Coding of rest positions and first frames, High profile: auto (default: all of these), "
+      "prediction (like other values), order (also in an order of their own), counterparts "
+      "(also from parts of the same shape)")
       ->group(tools);
   app.add_option("--track-levels", t.track_levels,
                  "Levels of hierarchical tracks, High profile; 0: none (default: 1)")

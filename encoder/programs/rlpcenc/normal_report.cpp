@@ -49,7 +49,7 @@ std::optional<std::string> normal_warning(const AttributeReport& normals) {
   return "normals are off by " + degrees(worst.mean) + " degrees on average in frame " +
          std::to_string(worst.frame) +
          ": shading may differ there. Normals of INPUT may not turn with its surface, or parts "
-         "may be thinner than the errors of positions (try a higher --quality)";
+         "may be thinner than the position error (try a higher --quality)";
 }
 
 }  // namespace rlpc

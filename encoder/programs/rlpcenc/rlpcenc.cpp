@@ -43,8 +43,8 @@ namespace {
 
 // What was coded without loss, and what was not.
 void print_lossless(const EncodeOptions& o, const EncodeReport& r) {
-  std::printf("  lossless: all coordinates of all frames, %s on a grid of 2^%d units (%d bits)",
-              o.settings.target.value == 0.0 ? "which are" : "once rounded to be",
+  std::printf("  lossless: all coordinates of all frames, %s a grid of 2^%d units (%d bits)",
+              o.settings.target.value == 0.0 ? "which lie on" : "after rounding to",
               r.header.grid.log2_step, r.header.position_bits);
   if (r.largest_rounding > 0.0) {
     std::printf("; as 32-bit floats, up to %.3g from the numbers of INPUT", r.largest_rounding);
@@ -84,7 +84,7 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   std::printf("  %s%llu bytes, %.4f bits per vertex and frame\n", e.exact() ? "" : "about ",
               static_cast<unsigned long long>(r.bytes), r.bpvf);
   if (!e.exact()) {
-    std::printf("  estimated from eight sections, %u frames in all:\n", e.frames_encoded);
+    std::printf("  estimated from eight sections with %u frames in total:\n", e.frames_encoded);
   }
   std::printf("  KG error %.4g %%, RMS %.6g, largest %.6g (%.4f %% of the diagonal)\n",
               m.kg_error_percent, m.rms_error, m.max_error, m.max_error_percent);
@@ -97,7 +97,7 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   }
   if (!o.verbose) return;
   for (const PatternCount& of_pattern : r.patterns) {
-    std::printf("  %u GOF%s of frames with pattern %s", of_pattern.gofs, s(of_pattern.gofs),
+    std::printf("  %u inter GOF%s with pattern %s", of_pattern.gofs, s(of_pattern.gofs),
                 frame_pattern_text(of_pattern.pattern).c_str());
     if (of_pattern.patches > 0) {
       std::printf(" and %u patch%s", of_pattern.patches, of_pattern.patches == 1 ? "" : "es");
@@ -105,7 +105,7 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
     std::printf("\n");
   }
   if (r.clusters == 0) {
-    std::printf("  %u GOF%s of frames, %u trial%s\n", r.num_gofs, s(r.num_gofs), r.trials,
+    std::printf("  %u inter GOF%s, %u trial%s\n", r.num_gofs, s(r.num_gofs), r.trials,
                 s(r.trials));
     return;
   }
@@ -146,13 +146,13 @@ void tell_if_far_below(const Target& target, const EncodeReport& report) {
   if (target.kind == Target::kBpvf && report.bpvf < kNear * target.value) {
     complain(std::string("fewer bits than --bpvf allows: ") +
              (is_exact ? "this is the highest precision"
-                       : "no encoding was found that comes closer"));
+                       : "no encoding closer to the target was found"));
   }
   const double error = target.kind == Target::kMaxError ? report.metrics.max_error
                                                         : report.metrics.kg_error_percent;
   if (target.kind != Target::kBpvf && !is_exact && error < kNear * target.value) {
     complain(
-        "the error is smaller than requested: no smaller file was found closer to the target");
+        "the error is smaller than requested: no smaller file closer to the target was found");
   }
 }
 
@@ -200,7 +200,7 @@ int report_target(const EncodeOptions& o, const EncodeReport& report) {
     char error[32];
     std::snprintf(error, sizeof error, "%.3g", report.metrics.max_error);
     return complain("the largest error is " + std::string(error) +
-                        ", more than was asked for: the grid or 32-bit floats are too coarse. "
+                        ", above the target: the grid or 32-bit floats are too coarse. "
                         "Try a larger --max-error, or move the animation to the origin",
                     kTargetMissed);
   }
@@ -208,7 +208,7 @@ int report_target(const EncodeOptions& o, const EncodeReport& report) {
     char error[32];
     std::snprintf(error, sizeof error, "%.3g", report.metrics.kg_error_percent);
     return complain("the KG error is " + std::string(error) +
-                        " %, more than was asked for: without a delay, it is met about",
+                        " %, above the target; low-delay mode meets it only approximately",
                     kTargetMissed);
   }
   return complain(
@@ -387,15 +387,15 @@ std::vector<std::string> doubts(const EncodeOptions& o, const FrameSource& sourc
   std::vector<std::string> notes;
   if (o.settings.low_delay && !source.attributes().later_normals.empty()) {
     notes.emplace_back(
-        "--low-delay compares the normals of the first frame alone: those of others may move "
-        "otherwise");
+        "--low-delay compares only the normals of the first frame: those of other frames may "
+        "differ");
   }
   if (source.triangles().empty())
     notes.emplace_back("has no triangles; encoded as a point cloud");
   if (const auto& axes = source.axes_of_mesh()) {
     notes.push_back(name_of_input(input.points) + " has other axes than this mesh" +
                     (is_mirror(*axes) ? ", and is mirrored" : "") + "; --axes " +
-                    axes_text(*axes) + " gives the stream those of the mesh");
+                    axes_text(*axes) + " turns it to the axes of the mesh");
   }
   if (source.num_frames() > 1 || input.path == "-") return notes;
   const std::string cache = sibling_of(input.path, InputFormat::Holds::kPoints);

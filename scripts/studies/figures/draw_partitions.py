@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Draws the clusters of a bundled animation as each way of partitioning makes them, side by side,
-with the sizes of the streams.
+"""Draws the clusters of a bundled animation for each method of partitioning, side by side, with the
+sizes of the streams.
 
   scripts/studies/figures/draw_partitions.py [--bin FOLDER] [-o FILE] [--name NAME] [--clusters N]
 
-  --bin FOLDER   rlpcenc and rlpcinfo (default: build/release/bin)
-  -o FILE        default: build/figures/partitions.svg
+  --bin FOLDER   folder of rlpcenc and rlpcinfo (default: build/release/bin)
+  -o FILE        output (default: build/figures/partitions.svg)
   --name NAME    elephant, curtain or robot_arm (default: elephant)
-  --clusters N   default: 12
+  --clusters N   number of clusters (default: 12)
 """
 
 import argparse

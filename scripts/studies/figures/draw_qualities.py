@@ -4,8 +4,8 @@ stream of each named quality, with the sizes of the streams.
 
   scripts/studies/figures/draw_qualities.py [--bin FOLDER] [-o FILE]
 
-  --bin FOLDER   rlpcenc and rlpcdec (default: build/release/bin)
-  -o FILE        default: scripts/studies/figures/qualities.svg
+  --bin FOLDER   folder of rlpcenc and rlpcdec (default: build/release/bin)
+  -o FILE        output (default: scripts/studies/figures/qualities.svg)
 """
 
 import argparse
