@@ -131,7 +131,8 @@ constexpr Size kOfRig{3 * kAround, 1, 10, 50, 10};
 TEST(MemoryLimit, HoldsForSharedRigs) {
   for (const std::uint32_t num_rigs : {1U, 8U}) {
     SCOPED_TRACE(num_rigs);
-    expect_within_estimate({1, Kind::kSharedRig, kOfRig, tube(kOfRig.vertices), num_rigs, 2}, 0.3);
+    expect_within_estimate({1, Kind::kSharedRig, kOfRig, tube(kOfRig.vertices), num_rigs, 2},
+                           0.3);
   }
 }
 

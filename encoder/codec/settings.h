@@ -171,11 +171,11 @@ struct EncoderSettings {
   HashMode hash_mode = HashMode::kGof;
   std::string metadata;  // JSON text, not validated, up to 1 MiB; empty: no metadata unit
   // Names of parts of the sequence, up to kMaxClips; empty: those of the animation, if
-  // takes_from_source, otherwise no clip table. Not checked against the number of frames if that
-  // is not known beforehand.
+  // takes_from_source, otherwise no clip table. Not checked against the number of frames if
+  // that is not known beforehand.
   std::vector<Clip> clips;
-  // A GLB without geometry (7.16), not validated, below 2^31 bytes; empty: that of the animation,
-  // if takes_from_source and attributes are not dropped, otherwise no asset unit.
+  // A GLB without geometry (7.16), not validated, below 2^31 bytes; empty: that of the
+  // animation, if takes_from_source and attributes are not dropped, otherwise no asset unit.
   std::string asset;
   // The animation is a FrameSource, or the FrameFormat of a FrameEncoder.
   bool takes_from_source = true;

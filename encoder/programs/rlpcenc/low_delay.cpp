@@ -74,7 +74,8 @@ InputResult<LowDelayReport> finish(FrameEncoder& encoder, std::optional<InputErr
 InputResult<LowDelayReport> encode_low_delay(FrameSource& source, const EncodeOptions& options,
                                              const ByteSink& sink, const Progress& progress) {
   FrameFormat format{source.num_vertices(), source.num_frames(), source.frame_rate(),
-                     source.triangles(), source.attributes(), source.clips(), source.asset()};
+                     source.triangles(),    source.attributes(), source.clips(),
+                     source.asset()};
   std::vector<float> xyz(3 * std::size_t{format.num_vertices});
   std::vector<double> exact(source.is_finer_than_floats() ? xyz.size() : 0);
   BoxOfFrames box;
