@@ -70,7 +70,7 @@ void AdaptiveWeights::start(std::size_t first, std::size_t count,
 VertexAdaptation::VertexAdaptation(AdaptiveWeights& weights)
     : weights_(weights), kernels_(kernels().back()) {}
 
-// 8.15.1 Start
+// 8.15.1 Initialisation
 bool VertexAdaptation::start(std::uint32_t v, std::span<const std::int32_t> values) {
   const auto ring = weights_.mesh_.ring(v);
   if (ring.size() < 2) return false;
