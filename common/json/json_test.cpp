@@ -153,7 +153,7 @@ TEST(MeasureJson, AgreesWithAParserOnDamagedTexts) {
       text[random() % text.size()] = "[]{},:\"\\0ae-\x80\xC3"[random() % 14];
     }
     const bool is_valid = json::accept(text);
-    num_valid += is_valid ? 1 : 0;
+    if (is_valid) ++num_valid;
     const bool is_read = !problem_of<json>(text);
     EXPECT_EQ(is_read, is_valid) << text;
   }

@@ -37,7 +37,7 @@ TEST(EncoderCheck, RandomCases) {
       ++refused;
     } else {
       ++encoded[c.options.profile % 3][c.options.preset % 3];
-      sequences += c.settings ? 1 : 0;
+      if (c.settings) ++sequences;
     }
   }
   for (const auto& profile : encoded) {

@@ -209,7 +209,7 @@ TEST(OwnMemory, WithoutItDecodingEndsAndAllGoesBack) {
       EXPECT_EQ(status, RLPC_OUT_OF_MEMORY) << path << " after " << calls;
       EXPECT_EQ(heap.now, 0U) << path << " after " << calls;
       EXPECT_EQ(heap.wrong, 0U) << path << " after " << calls;
-      ended += status == RLPC_OUT_OF_MEMORY ? 1 : 0;
+      if (status == RLPC_OUT_OF_MEMORY) ++ended;
     }
     if (++tried == 30) break;
   }

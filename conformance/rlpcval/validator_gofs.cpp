@@ -68,7 +68,7 @@ void GofWarnings::add(const ClusterGof& gof) {
     raise(needed_.max_components, cluster.components.size());
     // Without coded vertices, a cluster can still introduce seed vertices.
     const bool idle = coded[i] == 0 && (!cluster.lcf_flag || !cluster.components.empty());
-    idle_clusters += idle ? 1 : 0;
+    if (idle) ++idle_clusters;
     if (idle) continue;
     const auto& list = cluster.components;
     zero_components +=

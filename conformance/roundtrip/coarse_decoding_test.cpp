@@ -159,7 +159,7 @@ std::uint32_t check(const StreamBytes& stream, const SliceCut& cut = {}) {
     EXPECT_EQ(without.num_read() < coarse.num_read(), coarse.was_cut);
     EXPECT_EQ(coarse.was_cut, drops_slices(stream, layers));
     EXPECT_EQ(coarse.compared == coarse.frames.size(), !coarse.was_cut);
-    num_cut += coarse.was_cut ? 1 : 0;
+    if (coarse.was_cut) ++num_cut;
   }
   return num_cut;
 }

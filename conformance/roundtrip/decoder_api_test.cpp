@@ -118,7 +118,9 @@ TEST_P(Seeking, ParsingTheRestCountsAllGofs) {
   const auto num_gofs = whole->parse_rest();
   ASSERT_TRUE(num_gofs);
   std::size_t units = 0;
-  for (const UnitPlace& unit : units_of(stream_)) units += unit.type == UnitType::kGof ? 1 : 0;
+  for (const UnitPlace& unit : units_of(stream_)) {
+    if (unit.type == UnitType::kGof) ++units;
+  }
   EXPECT_EQ(*num_gofs, units);
   EXPECT_EQ(whole->position(), frames_.size());
   Frame frame = frame_buffer(*whole);

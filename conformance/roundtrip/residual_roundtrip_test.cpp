@@ -131,7 +131,9 @@ TEST(ResidualContext, GrowsWithTheExpectedMagnitude) {
 TEST(ResidualContext, OfSmallMagnitudesIsThatOfTheTable) {
   for (std::uint32_t e = 0; e < 48; ++e) {
     int index = 0;
-    for (const std::uint32_t first : {2U, 4U, 8U, 14U, 22U, 32U}) index += e >= first ? 1 : 0;
+    for (const std::uint32_t first : {2U, 4U, 8U, 14U, 22U, 32U}) {
+      if (e >= first) ++index;
+    }
     EXPECT_EQ(residual_context(e).index, index) << e;
   }
 }

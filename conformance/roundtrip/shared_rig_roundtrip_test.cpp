@@ -111,8 +111,10 @@ TEST(SharedRigRoundTrip, RandomLegalRigsAndGofsComeBack) {
     const SplitSkinnedGof from(seed, {});
     expect_round_trip(from);
     if (HasFailure()) return;
-    with_local_groups += from.tracks.group_end.size() > 1 ? 1 : 0;
-    for (const Trajectory& t : from.tracks.trajectories) still += t.trajectory_flag ? 0 : 1;
+    if (from.tracks.group_end.size() > 1) ++with_local_groups;
+    for (const Trajectory& t : from.tracks.trajectories) {
+      if (!t.trajectory_flag) ++still;
+    }
   }
   EXPECT_GT(with_local_groups, 200);
   EXPECT_GT(still, 200);

@@ -129,7 +129,7 @@ TEST(SubStreamExtractor, CopiesTheOtherUnits) {
   const std::vector<StreamBytes> before = units(stream);
   std::size_t changed = 0;
   for (const StreamBytes& unit : units(out)) {
-    changed += std::find(before.begin(), before.end(), unit) == before.end() ? 1 : 0;
+    if (std::find(before.begin(), before.end(), unit) == before.end()) ++changed;
   }
   // The hash of the GOF that was cut, the index, the end of the sequence if the index is
   // shorter.

@@ -95,7 +95,7 @@ TEST(SubStreamUnits, StreamsOfTheSuitesAreCut) {
     EXPECT_EQ(try_cut(stream, {}).stream, stream);
     for (const SliceCut& cut : kCuts) {
       EXPECT_TRUE(check_cut(stream, cut));
-      shorter += try_cut(stream, cut).stream.size() < stream.size() ? 1 : 0;
+      if (try_cut(stream, cut).stream.size() < stream.size()) ++shorter;
     }
   }
   EXPECT_GT(shorter, 100U);
@@ -185,7 +185,7 @@ TEST(SubStreamUnits, AnyOrderOfUnitsFailsOrConforms) {
     constexpr std::size_t kCases = 400;
     for (std::size_t i = 0; i < kCases && !testing::Test::HasFailure(); ++i) {
       SCOPED_TRACE(testing::Message() << "case " << i);
-      cut += check_cut(shuffler.stream(random), kCuts[i % std::size(kCuts)]) ? 1 : 0;
+      if (check_cut(shuffler.stream(random), kCuts[i % std::size(kCuts)])) ++cut;
     }
     EXPECT_GT(cut, kCases / 20);
     EXPECT_LT(cut, kCases * 9 / 10);

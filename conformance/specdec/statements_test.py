@@ -331,7 +331,7 @@ class RandomAccess(Access):
             v["DecodeRigs"](end)
             latest = {self.index["RigIndexIdx"][m]: o for m, o in enumerate(offsets) if o < end}
             self.assertEqual(found, sorted(latest.values()))
-            self.assertEqual([m for m, kept in enumerate(v["Models"]) if kept], sorted(latest))
+            self.assertEqual([m for m, kept in enumerate(v["SharedRigs"]) if kept], sorted(latest))
         self.assertGreater(len(offsets), len(found))  # one is replaced
 
     def test_wrong_lists_of_shared_rigs(self):

@@ -270,7 +270,7 @@ void LayerMaker::look_around(std::uint32_t v, const Ring& ring) {
         found |= kEdgesToPlaces[i][place];
         // Branch-free, because about half of the vertices are new.
         surroundings_.vertices[count] = u;
-        count += place == 0 ? 1 : 0;
+        if (place == 0) ++count;
         place_[u] = place == 0 ? kNoPlace : place;
       }
     }

@@ -13,7 +13,7 @@ Result<bool> ConcealedFrames::next(std::span<std::int32_t> positions) {
     }
     const auto more = decoder_.next_frame(positions);
     if (more) {
-      next_ += *more ? 1 : 0;
+      if (*more) ++next_;
       return more;
     }
     if (!report_ || next_ == first_) return more;

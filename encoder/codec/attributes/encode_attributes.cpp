@@ -266,8 +266,8 @@ void AttributeEncoder::set_diagonals(const Smoothing& smoothing, CodedAttributeS
     if (mate >= c || (!set.seams.empty() && set.seams[c])) continue;
     const bool is_diagonal = smoothing.is_diagonal[c];
     unlikely[c] = unlikely[mate] = is_diagonal != geometry_.is_likely_diagonal(c, mate);
-    num_diagonals += is_diagonal ? 1 : 0;
-    num_unlikely += unlikely[c] ? 1 : 0;
+    if (is_diagonal) ++num_diagonals;
+    if (unlikely[c]) ++num_unlikely;
   }
   if (num_diagonals == 0) return;
   const bool is_likely = settings_.from_positions && num_unlikely < num_diagonals;

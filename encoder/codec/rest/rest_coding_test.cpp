@@ -77,7 +77,9 @@ struct Coded {
 
 int count_counterparts(const RestEncoding& rest) {
   int count = 0;
-  for (const Counterpart& x : rest.counterparts) count += x.flag || x.new_flag ? 1 : 0;
+  for (const Counterpart& x : rest.counterparts) {
+    if (x.flag || x.new_flag) ++count;
+  }
   return count;
 }
 

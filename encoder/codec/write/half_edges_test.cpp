@@ -12,7 +12,9 @@ using Triangles = std::vector<Triangle>;
 
 std::uint32_t num_boundary_edges(const HalfEdges& mesh) {
   std::uint32_t n = 0;
-  for (const std::uint32_t opposite : mesh.opposite) n += opposite == HalfEdges::kNone ? 1 : 0;
+  for (const std::uint32_t opposite : mesh.opposite) {
+    if (opposite == HalfEdges::kNone) ++n;
+  }
   return n;
 }
 

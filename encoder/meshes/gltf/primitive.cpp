@@ -84,7 +84,7 @@ class GeometryReader {
       // glTF 2.0, 3.7.2.1. Others would make the steps of all colours larger.
       for (float& x : read.values) {
         const float clamped = std::clamp(x, 0.0F, 1.0F);
-        geometry.num_clamped += clamped == x ? 0 : 1;
+        if (clamped != x) ++geometry.num_clamped;
         x = clamped;
       }
     }

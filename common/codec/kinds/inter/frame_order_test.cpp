@@ -81,7 +81,9 @@ TEST(FrameOrder, DyadicPeriodsKeepFewFrames) {
   const FrameOrder order(pattern, 129);
   for (std::uint32_t p = 0; p < 129; ++p) {
     std::uint32_t kept = 0;
-    for (std::uint32_t q = 0; q <= p; ++q) kept += order.last_use(order[q].frame) > p ? 1 : 0;
+    for (std::uint32_t q = 0; q <= p; ++q) {
+      if (order.last_use(order[q].frame) > p) ++kept;
+    }
     EXPECT_LE(kept, 7U);  // NOTE in 8.19.1
   }
 }

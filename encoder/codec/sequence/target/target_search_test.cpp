@@ -121,7 +121,7 @@ TEST(TargetSearch, ReportsTheClosestFromBelowOfNoisyMeasurements) {
     EXPECT_TRUE(outcome.met);
     EXPECT_LE(outcome.best, 1.0);
     EXPECT_EQ(outcome.best, closest);
-    within += outcome.best >= 0.98 ? 1 : 0;
+    if (outcome.best >= 0.98) ++within;
     ++all;
   }
   EXPECT_GE(within, all * 95 / 100);

@@ -376,7 +376,9 @@ void BoneSolver::remove_bone(std::size_t bone, SkinSums& sums) {
         choose_candidates(v, sums);
         fit_weights(v, sums);
       } else {
-        for (RigWeight& w : weights_[v].weights) w.bone -= w.bone > bone ? 1 : 0;
+        for (RigWeight& w : weights_[v].weights) {
+          if (w.bone > bone) --w.bone;
+        }
       }
     }
   });

@@ -109,7 +109,7 @@ TEST(NearestRotation, MaximisesTheTrace) {
     if (i % 4 == 1) h.col(2) = h.col(0) - 2.0 * h.col(1);             // a plane
     if (i % 4 == 2) h = random.point() * random.point().transpose();  // a line
     if (i % 4 == 3 && h.determinant() > 0.0) h.row(0) = -h.row(0).eval();
-    reflections += h.determinant() < -1e-6 ? 1 : 0;
+    if (h.determinant() < -1e-6) ++reflections;
     const UnitQuaternion q = nearest_rotation(h);
     EXPECT_GE(q[0], 0.0);
     const Eigen::Matrix3d r = rotation_matrix(q);

@@ -42,7 +42,9 @@ TEST(SpanReuse, SpansMayHaveSeveralGofs) {
   const auto encoded = encode_with_rig(tube.context, *tube.kept, later, kTubeStep, kNoLimit);
   ASSERT_TRUE(encoded);
   std::uint32_t gofs = 0;
-  for (const auto& unit : encoded->units) gofs += unit.type == UnitType::kGof ? 1 : 0;
+  for (const auto& unit : encoded->units) {
+    if (unit.type == UnitType::kGof) ++gofs;
+  }
   EXPECT_EQ(gofs, 3U);
   EXPECT_LT(rms_error(later, *encoded), kTubeStep);
 }
