@@ -179,7 +179,7 @@ class SliceRecipe : public SectionRecipe {
     for (std::uint32_t k = 4; k < temporal_predictor; ++k) section.bypass(9, temporal_weight);
     for (std::uint32_t i = 0; i < 3 * num_frames; ++i) residual(models.trajectory[0], 0, 0);
   }
-  // 6.12.1 in a shared rig.
+  // 6.12.1: spatial header in a shared rig.
   void spatial_header(std::int32_t spatial_bits_delta) {
     field(HeaderField::kSpatialBits, spatial_bits_delta);
   }

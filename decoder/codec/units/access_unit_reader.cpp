@@ -79,7 +79,7 @@ Result<AccessUnit> AccessUnitReader::parse(const RawAccessUnit& coded, const Rig
   return parser.finish();
 }
 
-// Where read() has too little memory, so has parse().
+// Returns a limit with which parse() runs out of memory whenever read() would.
 MemoryLimit AccessUnitReader::limit_ahead(std::uint64_t max_memory_bytes) const {
   const MemoryLimit limit = memory_limit();
   const std::uint64_t left = limit.max_bytes - std::min(limit.max_bytes, limit.bytes_in_use);
@@ -182,7 +182,7 @@ Result<std::optional<UnitHeader>> AccessUnitReader::slice_after(const UnitHeader
   return follows ? std::optional(*next) : std::nullopt;
 }
 
-// The unit that follows `unit` in the same access unit; none if `unit` is the last.
+// Returns the unit that follows `unit` in the same access unit; none if `unit` is the last one.
 Result<std::optional<UnitHeader>> AccessUnitReader::unit_after(const UnitHeader& unit,
                                                                std::optional<UnitType> slice) {
   using Next = std::optional<UnitHeader>;
