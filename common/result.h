@@ -1,4 +1,4 @@
-// Errors and results. Bad streams and files give an Error; caller errors are asserted.
+// Errors and results. Bad streams and files yield an Error; caller errors are asserted.
 #pragma once
 
 #include <cassert>
@@ -16,13 +16,14 @@ enum class Errc : std::uint8_t {
   kIo,             // the stream could not be read
 };
 
-// Trivially copyable: naming a failure never allocates. Both strings are literals.
+// Error of a stream or file. Trivially copyable: reporting a failure never allocates. Both
+// strings are literals.
 struct Error {
   Errc code = Errc::kInvalid;
   const char* rule = "";           // rule id of the specification, for example "R-HDR-03"
   const char* element = "";        // syntax element, spelled as in the specification
-  std::uint64_t bit_pos = 0;       // where that element begins, or near it (spec/permissive.md)
-  std::uint64_t needed_bytes = 0;  // a lower bound, if memory is the limit and it is known
+  std::uint64_t bit_pos = 0;       // start of that element, or near it (spec/permissive.md)
+  std::uint64_t needed_bytes = 0;  // lower bound of the memory needed; 0: unknown or no limit
 };
 
 template <class T, class E = Error>

@@ -1,4 +1,4 @@
-// What a decoder gives besides positions: attributes, assets, bones.
+// Outputs of a decoder besides positions: attributes, assets and bones.
 #include <algorithm>
 #include <utility>
 
@@ -105,7 +105,7 @@ std::optional<SkeletonPose> Decoder::Impl::pose() {
   if (gof_with_skeleton_ != first) {
     std::optional<Skeleton> skeleton = gof_->gof.recon->skeleton();
     if (!skeleton) return std::nullopt;
-    // The place of each decoded vertex in the output.
+    // Maps decoded indices of vertices, passed as positions, to output order.
     Vector<std::int32_t> decoded(3 * std::size_t{stream_.header().num_vertices});
     for (std::size_t i = 0; i < decoded.size(); ++i) {
       decoded[i] = static_cast<std::int32_t>(i / 3);

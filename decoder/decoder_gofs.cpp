@@ -1,4 +1,4 @@
-// The GOFs that a decoder takes frames from: loading, keeping, finding and prefetching them.
+// GOFs of a decoder: loads, caches, finds and prefetches them.
 #include <algorithm>
 #include <cassert>
 #include <utility>
@@ -21,11 +21,11 @@ void Decoder::Impl::fail(const Error& error) {
   if (prefetch_) prefetch_->clear();
 }
 
-// Whether the GOF is decoded frame by frame.
+// Returns whether the GOF is decoded frame by frame.
 Result<bool> Decoder::Impl::is_live(const UnitHeader& unit) {
   if (!stream_.header().open_end_flag) return false;
   const auto header = stream_.gof_header(unit);
-  if (!header) return false;  // reading the GOF finds the error, or another before it
+  if (!header) return false;  // reading the GOF reports this error or an earlier one
   return rlpc::is_live(stream_.header(), header->kind);
 }
 
@@ -70,7 +70,7 @@ Result<bool> Decoder::Impl::load_gof() {
   if (forward_only_) stream_.units().forget((*unit)->offset);
   const auto live = is_live(**unit);
   if (!live) return live;
-  // Frames out of order need the whole GOF, unless it has an error after them.
+  // Frames out of order need the whole GOF, unless an error follows them.
   if (!*live || is_random_) {
     auto gof = find_gof(**unit);
     if (gof) enter(std::move(*gof));
@@ -80,7 +80,7 @@ Result<bool> Decoder::Impl::load_gof() {
   return live_->begin(**unit);
 }
 
-// The GOF that begins with a unit: kept, prefetched, or parsed now.
+// Returns the GOF that begins with a unit: cached, prefetched, or parsed now.
 Result<std::unique_ptr<LoadedGof>> Decoder::Impl::find_gof(const UnitHeader& unit) {
   const std::uint32_t first_frame = stream_.next_first_frame();
   if (auto kept = cache_.take_at(unit.offset)) {

@@ -57,29 +57,30 @@ class Decoder::Impl : public Owned {
     if (live_) return live_->may_have(frame);
     return gof_ && gof_->has_frame(frame);
   }
-  // Of a frame, seen from the last one decoded.
+  // Returns the direction of a frame from the last one decoded.
   Direction direction_of(std::uint32_t frame) const;
-  // Loads the next GOF of the stream. False at the end of the sequence.
+  // Loads the next GOF of the stream. Returns false at the end of the sequence.
   Result<bool> load_gof();
   Result<bool> go_to_gof_of(std::uint32_t frame);
-  // Makes a GOF the one that frames are taken from.
+  // Makes a GOF the current one.
   void enter(std::unique_ptr<LoadedGof> gof);
-  // Keeps the one that they were taken from.
+  // Caches the current GOF.
   void leave_gof();
   void count_cached_bytes();
   Result<std::unique_ptr<LoadedGof>> find_gof(const UnitHeader& unit);
   Result<std::unique_ptr<LoadedGof>> read_gof(const UnitHeader& unit);
   std::unique_ptr<LoadedGof> loaded(std::uint64_t offset, std::uint64_t end, PreparedGof gof);
   Result<bool> is_live(const UnitHeader& unit);
-  // Begins preparing the GOFs that come next in the direction of the last frames.
+  // Starts preparing the next GOFs in the direction of playback.
   void look_ahead();
-  // Of the whole mesh, uncut, in decoded order; then goes on where it was.
+  // Decodes the first frame of the whole mesh, uncut, in decoded order; then restores the
+  // state.
   Result<Vector<std::int32_t>> first_frame();
   Result<Vector<std::int32_t>> decode_first_frame();
-  // False after the last frame of the GOF.
+  // Returns false after the last frame of the GOF.
   Result<bool> decode_live_frame(std::span<std::int32_t> positions);
   Result<bool> decode_frame(std::span<std::int32_t> positions);
-  // The loaded GOF may no longer match the position.
+  // Sets the sticky error. Drops the loaded GOF, which may no longer match the position.
   void fail(const Error& error);
   void to_output_order(std::span<const std::int32_t> decoded,
                        std::span<std::int32_t> positions) const;
@@ -102,14 +103,14 @@ class Decoder::Impl : public Owned {
   std::optional<Prefetch> prefetch_;
   std::optional<Error> failure_;  // sticky until a successful seek
   std::uint32_t position_ = 0;
-  std::optional<std::uint32_t> last_frame_;  // decoded
+  std::optional<std::uint32_t> last_frame_;  // last frame decoded
   Direction direction_ = Direction::kForward;
-  std::optional<Direction> looked_ahead_;  // since the GOF was entered
-  bool is_random_ = false;                 // frames have been asked for out of order
+  std::optional<Direction> looked_ahead_;  // direction of look_ahead() in the current GOF
+  bool is_random_ = false;                 // frames have been decoded out of order
   bool was_cut_ = false;
   std::uint32_t compared_frames_ = 0;
-  std::shared_ptr<const Skeleton> skeleton_;        // the last one
-  std::optional<std::uint32_t> gof_with_skeleton_;  // its first frame
+  std::shared_ptr<const Skeleton> skeleton_;        // last skeleton returned
+  std::optional<std::uint32_t> gof_with_skeleton_;  // first frame of its GOF
 };
 
 }  // namespace rlpc

@@ -9,9 +9,10 @@
 
 namespace rlpc {
 
-// The limit that an Errc::kLimitExceeded refers to.
+// Limit that an Errc::kLimitExceeded refers to.
 enum class ExceededLimit : std::uint8_t { kVertices, kTriangles, kFrames, kMemory };
 
+// Returns the limit that an error of code kLimitExceeded refers to.
 inline ExceededLimit exceeded_limit(const Error& error) {
   const std::string_view element = error.element;
   if (error.needed_bytes > 0) return ExceededLimit::kMemory;
@@ -22,6 +23,7 @@ inline ExceededLimit exceeded_limit(const Error& error) {
   return ExceededLimit::kMemory;
 }
 
+// Describes the limit that an error exceeds: "more vertices than the limit".
 inline std::string describe_limit(const Error& error) {
   switch (exceeded_limit(error)) {
     case ExceededLimit::kVertices:
@@ -42,8 +44,8 @@ inline std::string describe_limit(const Error& error) {
          " of memory, more than the limit";
 }
 
-// An error as text, for example "bit 960: seed_vertex breaks rule R-GOF-06; the stream is
-// damaged or ...".
+// Describes an error with its place, its rule and the remedy: "bit 960: seed_vertex: not a
+// conforming stream (rule R-GOF-06); the file is damaged, or its encoder has a bug".
 inline std::string describe_error(const Error& error) {
   const std::string where = "bit " + std::to_string(error.bit_pos) + ": " + error.element;
   const std::string rule =

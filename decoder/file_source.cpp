@@ -69,8 +69,8 @@ Error cannot_open(int code) {
   return Error{Errc::kIo, "", why, 0};
 }
 
-// Whether the bytes may begin a stream, possibly damaged by a transfer: half of the signature
-// matches.
+// Returns whether the bytes may begin a stream, perhaps damaged by a transfer: half of the
+// signature matches.
 bool begins_like_stream(std::span<const std::uint8_t> bytes) {
   std::size_t right = 0;
   for (std::size_t i = 0; i < std::min(bytes.size(), kSignature.size()); ++i) {
@@ -79,8 +79,8 @@ bool begins_like_stream(std::span<const std::uint8_t> bytes) {
   return 2 * right >= kSignature.size();
 }
 
-// Of streams that can be open-ended, version 1.2, only what is needed is read, when it is
-// needed.
+// Makes a source for a pipe. Streams of version 1.2, which can be open-ended, are read only as
+// far as needed, when needed.
 Result<std::unique_ptr<ByteSource>> piped_source(std::FILE* file, File owned,
                                                  std::uint64_t max_memory_bytes) {
   constexpr std::uint8_t kOpenEnded = 2;  // version_minor
@@ -95,7 +95,7 @@ Result<std::unique_ptr<ByteSource>> piped_source(std::FILE* file, File owned,
   if (input.state() == PipedInput::State::kTooLarge) {
     return Error{Errc::kLimitExceeded, "", "stream", 0};
   }
-  // No more is read of what is no stream.
+  // Stops reading input that is not a stream.
   const std::uint64_t most = begins_like_stream(input.beginning()) ? max_memory_bytes : 0;
   return {std::make_unique<PipedSource>(std::move(input), std::move(owned), most)};
 }

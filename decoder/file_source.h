@@ -11,10 +11,10 @@
 
 namespace rlpc {
 
-// Reads from a file as needed. A pipe or a device is buffered: of a stream of version 1.2, what
-// has been needed so far; others are read to their end, unless their beginning shows that they
-// are no streams. Errors: Errc::kIo, whose element holds the reason; Errc::kLimitExceeded: more
-// than max_memory_bytes to buffer.
+// Opens a file, which is read as needed. A pipe or device is buffered: as far as needed if it
+// holds a stream of version 1.2, otherwise to its end, unless its beginning shows that it is no
+// stream. Errors: Errc::kIo, whose element holds the reason; Errc::kLimitExceeded if the buffer
+// exceeds max_memory_bytes.
 Result<std::unique_ptr<ByteSource>> file_source(
     const std::string& path, std::uint64_t max_memory_bytes = kUsualMemoryBytes);
 // Opens standard input in the same way.

@@ -32,7 +32,7 @@ Decoder::Impl::Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& op
 
 Result<bool> Decoder::Impl::open() {
   if (auto ok = stream_.open(); !ok) return ok;
-  // Prefetching would wait for GOFs that are yet to come.
+  // Prefetching would wait for GOFs that have not arrived.
   if (wants_prefetch_ && !stream_.header().open_end_flag) {
     prefetch_.emplace(stream_, rigs_, threads_, prefetch_bytes_, max_cached_bytes_ / 2,
                       num_threads_ - 1);
@@ -57,7 +57,7 @@ std::optional<std::uint32_t> Decoder::Impl::num_frames() {
 }
 
 Result<bool> Decoder::Impl::decode_live_frame(std::span<std::int32_t> positions) {
-  // After a seek into the GOF, those before it only pass.
+  // After a seek into the GOF, decodes and drops the frames before it.
   do {
     if (const auto more = live_->next(); !more || !*more) return more;
   } while (live_->next_frame() <= position_);

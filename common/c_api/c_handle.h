@@ -1,4 +1,4 @@
-// Shared by the handles of the C API: memory, errors, and containment of exceptions.
+// Memory, errors and containment of exceptions of the handles of the C API.
 #pragma once
 
 #include <algorithm>
@@ -17,14 +17,15 @@
 
 namespace rlpc {
 
-// The last error, in a fixed buffer: works after out-of-memory.
+// Last error of a handle, in a fixed buffer that needs no memory.
 class HandleError {
  public:
+  // Sets the text, cut off at the size of the buffer, and returns the status.
   rlpc_status set(rlpc_status status, std::string_view text) {
     text_[text.copy(text_.data(), text_.size() - 1)] = '\0';
     return status;
   }
-  // Sticky: the handle is unusable.
+  // Sets a sticky error: the handle becomes unusable.
   rlpc_status break_handle(rlpc_status status, std::string_view text) {
     broken_ = status;
     return set(status, text);
@@ -38,8 +39,8 @@ class HandleError {
   rlpc_status broken_ = RLPC_OK;
 };
 
-// Of the memory that calls on the handle allocate: its member `owner`, if it has one that is
-// set.
+// Returns the owner of the memory that calls on the handle allocate: its member `owner`, or
+// null if it has none or it is not set.
 template <class Handle>
 const Owner* owner_of(const Handle& handle) {
   if constexpr (requires { handle.owner; }) {
@@ -48,8 +49,8 @@ const Owner* owner_of(const Handle& handle) {
   return nullptr;
 }
 
-// Calls `call`, which returns a status, and converts exceptions. Handle has a member
-// HandleError error.
+// Returns the status that `call` returns, or converts its exceptions to a sticky error. Handle
+// has a member HandleError error.
 template <class Handle, class Call>
 rlpc_status guarded(Handle* handle, const Call& call) noexcept {
   if (handle == nullptr) return RLPC_BAD_ARGUMENT;
@@ -68,7 +69,7 @@ rlpc_status guarded(Handle* handle, const Call& call) noexcept {
   }
 }
 
-// Makes a new handle, at `place` unless that is null. Null if `place` is too small or not
+// Makes a handle, at `place` unless that is null. Returns null if `place` is too small or not
 // aligned, or if there is no memory. Handle has a member bool is_placed.
 template <class Handle>
 Handle* make_handle(void* place, std::size_t place_bytes) noexcept {
@@ -81,6 +82,7 @@ Handle* make_handle(void* place, std::size_t place_bytes) noexcept {
   return handle;
 }
 
+// Destroys a handle of make_handle(). Null: does nothing.
 template <class Handle>
 void close_handle(Handle* handle) noexcept {
   if (handle == nullptr) return;
@@ -91,8 +93,9 @@ void close_handle(Handle* handle) noexcept {
   }
 }
 
-// Structures of the API begin with struct_size, their size in the version of the caller, which
-// may be older. Sets options to their defaults, up to that size.
+// Copies a structure to the caller. Structures of the API begin with struct_size, their size in
+// the version of the caller, which may be older or newer; members that are unknown here are
+// set to 0.
 template <class T>
 void give_struct(const T& ours, T* theirs, std::size_t struct_size) {
   if (theirs == nullptr || struct_size < sizeof(std::size_t)) return;
@@ -101,8 +104,9 @@ void give_struct(const T& ours, T* theirs, std::size_t struct_size) {
   theirs->struct_size = struct_size;
 }
 
-// Reads options of the caller; `ours` must hold the defaults, for members that the caller does
-// not know. False: not initialised, or members that this version does not know are set.
+// Reads a structure of the caller; `ours` holds the defaults, which stay for members that the
+// caller does not know. Returns false if it is not initialised, or if members that this version
+// does not know are set.
 template <class T>
 bool take_struct(const T* theirs, T& ours) {
   constexpr std::size_t kMostBytes = 4096;

@@ -1,9 +1,9 @@
 // RLPC in C: status codes of rlpc_decode.h and rlpc_encode.h. C99 and C++.
 #pragma once
 
-// RLPC_API is before each function. Programs that link a static library define RLPC_STATIC,
+// RLPC_API precedes each function. Programs that link a static library define RLPC_STATIC,
 // which only Windows needs; CMake's targets and `pkg-config --static` do so. RLPC_BUILDING is
-// defined while a shared library itself is built.
+// defined while the shared library itself is built.
 #if defined(RLPC_STATIC)
 #define RLPC_API
 #elif defined(_WIN32) && defined(RLPC_BUILDING)
@@ -23,10 +23,10 @@ extern "C" {
 // NOLINTBEGIN(readability-identifier-naming): C naming.
 typedef enum rlpc_status {
   RLPC_OK = 0,
-  RLPC_END = 1,             // not an error: no further frames, and the stream was complete
+  RLPC_END = 1,             // not an error: no further frames, and the stream is complete
   RLPC_BAD_STREAM = 2,      // not a conforming stream: damaged or truncated
-  RLPC_UNSUPPORTED = 3,     // a later version of the format
-  RLPC_LIMIT_EXCEEDED = 4,  // exceeds the limits of the options
+  RLPC_UNSUPPORTED = 3,     // a later version of the format, or a feature not built in
+  RLPC_LIMIT_EXCEEDED = 4,  // limits of the options exceeded
   RLPC_IO_FAILED = 5,       // a file or a callback failed
   RLPC_BAD_INPUT = 6,       // invalid animation or settings
   RLPC_BAD_ARGUMENT = 7,    // null, wrong number of values, no such frame
@@ -35,11 +35,11 @@ typedef enum rlpc_status {
 } rlpc_status;
 // NOLINTEND(readability-identifier-naming)
 
-// A short text for a status; the error text of a handle has the details. Never null, for any
-// number.
+// Returns a short text for a status, never null, even for unknown numbers; the error text of a
+// handle has the details. Thread-safe.
 RLPC_API const char* rlpc_status_text(int status);
 
-// The version of the library, such as "1.2.0".
+// Returns the version of the library, such as "1.2.0". Thread-safe.
 RLPC_API const char* rlpc_version(void);
 
 #ifdef __cplusplus

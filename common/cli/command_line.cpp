@@ -18,7 +18,7 @@ constexpr int kUsage = 64;
 constexpr std::size_t kColumn = 26;  // start of descriptions
 constexpr std::size_t kWidth = 80;
 
-// "  --name VALUE          description", wrapped.
+// Formats "  --name VALUE          description", wrapped.
 std::string entry(const std::string& term, const std::string& description) {
   std::string out = "  " + term;
   std::size_t column = out.size();
@@ -80,7 +80,7 @@ class HelpPages : public CLI::Formatter {
   HelpText text_;
 };
 
-// Edit distance: letters to insert, remove or replace.
+// Returns the edit distance: letters to insert, remove or replace.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -94,7 +94,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-// The option that was probably meant; "": none is similar.
+// Returns the option that was probably meant; "" if none is similar.
 std::string similar_option(const CLI::App& app, const std::string& word) {
   std::string nearest;
   std::size_t least = 3;
@@ -109,7 +109,7 @@ std::string similar_option(const CLI::App& app, const std::string& word) {
   return nearest;
 }
 
-// The arguments that are no options, in their order.
+// Returns the arguments that are not options, in their order.
 std::vector<std::string> plain_words(const CLI::App& app) {
   std::vector<std::string> words;
   for (const CLI::Option* option : app.get_options()) {
@@ -121,7 +121,7 @@ std::vector<std::string> plain_words(const CLI::App& app) {
   return words;
 }
 
-// Which of the meshes a point cache is for: the one that is named like it, otherwise the one
+// Returns the index of the mesh of a point cache: the mesh with its name, otherwise the one
 // before it; a stream has none.
 std::size_t mesh_of_cache(const std::vector<std::string>& meshes, const std::string& cache) {
   const auto begins_like_cache = [&](const std::string& mesh) {
@@ -147,16 +147,16 @@ std::string surplus_text(const CLI::App& app, const std::vector<std::string>& wo
          (has_points ? "; put patterns in quotes, as in 'walk_*.obj'" : "");
 }
 
-// Whether a word is the value of an option whose value may be missing: numbers are, right or
-// wrong, and whatever else the option accepts.
+// Returns whether a word is the value of an option whose value may be missing: any number,
+// valid or not, and any other word that the option accepts.
 bool is_value_of(CLI::Option& option, std::string word) {
   if (!word.empty() && word[0] >= '0' && word[0] <= '9') return true;
   const CLI::Validator* const check = option.get_validator(0);
   return check != nullptr && (*check)(word).empty();
 }
 
-// The command line with options that have no value, though they may have one, at its end, where
-// no argument follows that CLI11 would take for the value.
+// Moves options whose optional value is missing to the end of the command line, where no
+// argument follows that CLI11 would take for the value.
 std::vector<std::string> without_taken_arguments(CLI::App& app,
                                                  std::vector<std::string> words) {
   std::vector<std::string> moved;
@@ -213,7 +213,7 @@ void add_help(CLI::App& app, HelpText text, const std::string& version) {
 std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv) {
   std::vector<std::string> words =
       without_taken_arguments(app, std::vector<std::string>(argv + 1, argv + argc));
-  std::reverse(words.begin(), words.end());  // as App::parse() wants them
+  std::reverse(words.begin(), words.end());  // App::parse() expects the reverse order
   try {
     app.parse(std::move(words));
   } catch (const CLI::ExtrasError&) {

@@ -11,12 +11,12 @@ namespace rlpc {
 
 struct HelpText {
   std::string usage;                     // "INPUT -o OUT [OPTIONS]"
-  std::vector<std::string> main_groups;  // the groups of options that --help shows
-  std::string examples;                  // at the end of both pages
+  std::vector<std::string> main_groups;  // groups of options that --help shows
+  std::string examples;                  // end of both pages
   std::string details;                   // --help-all only
 };
 
-// Adds --help, --help-all and --version; to be called after adding all other options. The
+// Adds --help, --help-all and --version. Must be called after adding all other options. The
 // placeholder of a value ("FILE") is the option_text() of the option.
 void add_help(CLI::App& app, HelpText text, const std::string& version);
 
@@ -24,8 +24,8 @@ void add_help(CLI::App& app, HelpText text, const std::string& version);
 // 64 after an error, which is reported on standard error.
 std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv);
 
-// Returns what to say of point caches that stand after a mesh, without their option; "": there
-// are none. To be called after parse_command_line().
+// Returns advice on point caches that follow a mesh without their option; "" if there are none.
+// Must be called after parse_command_line().
 std::string point_cache_advice(const CLI::App& app);
 
 }  // namespace rlpc

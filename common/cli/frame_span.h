@@ -1,4 +1,4 @@
-// The frames that an option names.
+// Frames that an option names.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@ struct FrameSpan {
   std::uint32_t last;
 };
 
-// "A-B", "A" or "A-" of frames 0 to num_frames - 1; empty: all of them. None if it is wrong.
+// Parses "A-B", "A" or "A-", with frames 0 to num_frames - 1; empty: all frames. None if the
+// text is invalid.
 std::optional<FrameSpan> parse_frame_span(const std::string& text, std::uint32_t num_frames);
 
 }  // namespace rlpc

@@ -29,7 +29,7 @@ inline void append_f32_be(std::string& bytes, float value) {
   append_u32_be(bytes, std::bit_cast<std::uint32_t>(value));
 }
 
-// The caller must have checked the length.
+// Load numbers. The caller must have checked the length.
 inline std::uint32_t load_u32(std::span<const char> bytes, std::size_t offset) {
   std::uint32_t value = 0;
   for (std::size_t i = 4; i-- > 0;) {

@@ -19,7 +19,7 @@ struct CloseFile {
 
 }  // namespace
 
-// Without a buffer, reading waits for the bytes that are asked for and for no more.
+// Disables buffering, so that reading waits only for the requested bytes.
 PipedInput::PipedInput(std::FILE* file) : file_(file) {
   std::setvbuf(file, nullptr, _IONBF, 0);
 }

@@ -12,22 +12,22 @@
 
 namespace rlpc {
 
-// Input that can be read only once; its contents are kept in memory.
+// Input that can be read only once, and is kept in memory.
 class PipedInput {
  public:
   enum class State : std::uint8_t { kReading, kWhole, kTooLarge, kFailed };
 
-  // The file is not owned, and must not be read otherwise.
+  // file: not owned; nothing else may read it.
   explicit PipedInput(std::FILE* file);
 
-  // The first 64 bytes; fewer only at the end.
+  // Returns the first 64 bytes; fewer only if the input is shorter.
   std::span<const std::uint8_t> beginning();
-  // Reads to the end. If there are more than max_bytes, keeps nothing.
+  // Reads to the end. Keeps nothing if there are more than max_bytes.
   State read_rest(std::uint64_t max_bytes);
-  // Waits until the first `end` bytes have been read, and reads no more; or for the end. If
-  // more than max_bytes are to be kept, keeps nothing.
+  // Waits for the first `end` bytes or the end of the input, and reads no more. Keeps nothing
+  // if there are more than max_bytes to keep.
   State read_to(std::uint64_t end, std::uint64_t max_bytes);
-  // Frees memory: of the bytes before an offset, only the first 64 are kept for certain.
+  // Frees memory: may drop bytes before an offset, except the first 64.
   void forget(std::uint64_t before);
 
   State state() const { return state_; }
@@ -36,11 +36,11 @@ class PipedInput {
   bool keeps(std::uint64_t offset) const {
     return offset < beginning_.size() || offset >= beginning_.size() + forgotten_;
   }
-  // Bytes that have been read and are kept.
+  // Copies bytes, which must have been read and kept.
   void copy(std::uint64_t offset, std::span<std::uint8_t> out) const;
 
  private:
-  // Reads up to `bytes` bytes more, at most to the end of a block.
+  // Reads up to `bytes` more bytes, at most to the end of a block.
   void read_more(std::uint64_t bytes);
 
   std::FILE* file_;
@@ -51,7 +51,7 @@ class PipedInput {
   Vector<Vector<std::uint8_t>> blocks_;  // after the beginning; all but the last are full
 };
 
-// Reads a small file. None: it cannot be read, or has more than max_bytes.
+// Reads a small file. None if it cannot be read, or has more than max_bytes.
 std::optional<std::string> read_small_file(const std::string& path, std::size_t max_bytes);
 
 }  // namespace rlpc

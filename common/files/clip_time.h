@@ -1,8 +1,8 @@
-// The time of clips (7.3, 7.15): frame k of a clip is its pose k intervals after its start, an
-// interval being the reciprocal of the frame rate. n frames take n - 1 intervals; where a clip
-// repeats, its end is the start of the next turn. Times are rounded: what is within a millionth
-// of an interval of a frame, or of the middle between two, counts as being there. The
-// JavaScript package has the same rules (decoder/web/package/src/clip_time.js).
+// Clip time (7.3, 7.15): frame k of a clip is due k intervals after its start; an interval is
+// the reciprocal of the frame rate. A clip of n frames lasts n - 1 intervals; when it repeats,
+// its end is the start of the next pass. Times within a millionth of an interval of a frame, or
+// of the middle between two frames, are rounded to it. The JavaScript package has the same
+// rules (decoder/web/package/src/clip_time.js).
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,27 @@
 
 namespace rlpc {
 
-// Seconds from the first to the last of so many frames, num_frames >= 1.
+// Returns the seconds from the first frame to the last of num_frames >= 1 frames.
 inline double clip_seconds(FrameRate frame_rate, std::uint32_t num_frames) {
   return static_cast<double>(num_frames - 1) * frame_rate.denominator / frame_rate.numerator;
 }
 
 inline constexpr double kExactPlace = 1e-6;  // intervals
 
-// The frame that is nearest to a place, which is 0 or greater, and below 2^32 - 1.
+// Returns the frame nearest to a place. 0 <= place < 2^32 - 1.
 inline std::uint32_t nearest_frame(double place) {
   return static_cast<std::uint32_t>(place + (0.5 + kExactPlace));
 }
 
-// A place, or that of the frame to which it is equal but for rounding.
+// Returns the frame that a place equals up to rounding errors, otherwise the place.
 inline double exact_place(double place) {
   const double frame = nearest_frame(place);
   const double off = place - frame;
   return off < kExactPlace && off > -kExactPlace ? frame : place;
 }
 
-// Where a clip of num_frames >= 1 frames is after so many seconds: from 0, its first frame, to
-// num_frames - 1, its last; between frames, with a fraction. seconds: not a NaN; below 0 is 0.
+// Returns the place in a clip of num_frames >= 1 frames at a time: from 0, its first frame, to
+// num_frames - 1, its last; with a fraction between frames. seconds: not a NaN; negative: 0.
 inline double clip_place(FrameRate frame_rate, std::uint32_t num_frames, double seconds,
                          bool repeats) {
   constexpr double kMost = 0x1p53;  // where doubles have no fraction left

@@ -25,7 +25,7 @@ Unfinished& unfinished() {
   return list;
 }
 
-// Signals to a process, which by default end it.
+// Signals to a process that by default end it.
 constexpr std::array kEnding{SIGINT,  SIGTERM, SIGHUP,    SIGQUIT, SIGXCPU,
                              SIGALRM, SIGPROF, SIGVTALRM, SIGUSR1, SIGUSR2};
 
@@ -49,7 +49,7 @@ bool is_ignored(int signal) {
     std::filesystem::remove_all(path, ignored);
   }
   std::raise(signal);
-  std::abort();  // not reached: the default action of all of them ends the process
+  std::abort();  // not reached: the default action of these signals ends the process
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ void handle_interrupts() {
   for (const int signal : kEnding) {
     if (!is_ignored(signal)) sigaddset(&signals, signal);
   }
-  // A thread handles them, as signal handlers must not remove files.
+  // A thread handles the signals, as signal handlers must not remove files.
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   try {
     std::thread([signals] {

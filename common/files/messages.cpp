@@ -15,7 +15,7 @@ struct Character {
   std::size_t bytes = 1;
 };
 
-// Decodes the first character; none: invalid UTF-8.
+// Decodes the first character; none if it is invalid UTF-8.
 std::optional<Character> first_character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);
@@ -35,7 +35,7 @@ std::optional<Character> first_character(std::string_view text) {
 
 bool is_harmless(std::uint32_t code) {
   if (code < 0x20 || (code >= 0x7F && code <= 0x9F)) return false;
-  // Line and paragraph separators, and directional controls.
+  // Excludes line and paragraph separators, and directional controls.
   return (code < 0x200E || code > 0x200F) && (code < 0x2028 || code > 0x202E) &&
          (code < 0x2066 || code > 0x2069);
 }

@@ -11,7 +11,7 @@ constexpr std::size_t kMaxWidth = 19;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// A name with one run of "#".
+// Parses a name with one run of "#".
 std::optional<NumberedName> parse_run(const std::string& name) {
   const std::size_t first = name.find('#');
   if (first == name.npos) return std::nullopt;

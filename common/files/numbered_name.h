@@ -14,19 +14,20 @@ struct NumberedName {
   std::size_t width = 0;  // padded with zeros to this many digits
 
   std::string with(std::uint64_t number) const;
-  // The number for which with() gives this name.
+  // Returns the number for which with() returns a name; none if there is none.
   std::optional<std::uint64_t> number_of(const std::string& name) const;
 };
 
-// Nothing if it is no such pattern; "%4d", which would pad with blanks, is none. One run of "#"
-// stands for as many digits or more, as in animation programs, where there is no "%".
+// Parses a pattern; none if it is invalid, such as "%4d", which would pad with blanks. In a
+// name without "%", one run of "#" stands for as many digits or more, as in animation programs.
 std::optional<NumberedName> parse_pattern(const std::string& pattern);
 
-// Whether a file name is meant as a pattern, right or wrong: it has a "%", or one run of "#".
+// Returns whether a file name is meant as a pattern, valid or not: it has a "%", or one run of
+// "#".
 bool is_pattern(const std::string& name);
 
-// For a message about a wrong pattern: what to write for "%4d", as in "; for %4d, write %04d";
-// empty for others.
+// Returns a remedy for messages about invalid patterns such as "%4d": "; for %4d, write %04d".
+// Empty for others.
 std::string advice_on_pattern(const std::string& name);
 
 }  // namespace rlpc

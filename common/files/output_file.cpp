@@ -27,7 +27,8 @@ std::size_t longest_name(const fs::path& folder) {
   return longest > 0 ? static_cast<std::size_t>(longest) : NAME_MAX;
 }
 
-// Temporary names: "x.rlpd" -> "x.rlpd.partial", "x.rlpd.partial1", ...; long names are cut.
+// Returns a temporary name: "x.rlpd" -> "x.rlpd.partial", "x.rlpd.partial1", ...; long names
+// are cut.
 std::string temporary_name(const fs::path& path, int attempt) {
   const std::string end = ".partial" + (attempt == 0 ? "" : std::to_string(attempt));
   std::string name = path.filename().string();
@@ -134,7 +135,7 @@ OutputResult<OutputFile> OutputFile::create(const std::string& path,
 
 OutputResult<OutputFile> OutputFile::create_within(const std::string& path,
                                                    std::shared_ptr<OutputLimit> limit) {
-  // While a signal removes the folder, nothing may be added to it.
+  // Nothing may be added to the folder while a signal removes it.
   const HoldInterrupts hold;
   std::FILE* const file = std::fopen(path.c_str(), "wbx");
   if (file == nullptr) return output_error(path, "create", errno);
@@ -253,7 +254,7 @@ std::optional<OutputError> TemporaryFolder::sync() const {
   const int folder = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
   if (folder < 0) return output_error(path_, "write", errno);
 #ifdef __linux__
-  const bool good = syncfs(folder) == 0;  // all at once; fsync() would wait for each file
+  const bool good = syncfs(folder) == 0;  // all files at once; fsync() would wait for each
 #else
   const bool good = fsync(folder) == 0;
 #endif

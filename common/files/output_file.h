@@ -14,19 +14,19 @@
 
 namespace rlpc {
 
-// One line for the user: path, what failed, and the system's reason.
+// Error of an output file.
 struct OutputError {
-  std::string message;
+  std::string message;    // one line for the user: path, what failed, and the system's reason
   bool is_usage = false;  // the request is impossible; no file is at fault
-  bool is_limit = false;  // the same; a limit of the caller is too low
+  bool is_limit = false;  // the request exceeds a limit of the caller
 };
 template <class T>
 using OutputResult = Result<T, OutputError>;
 
-// A limit on the bytes written in total to all files that share it.
+// Limit of the total bytes written to all files that share it.
 struct OutputLimit {
   explicit OutputLimit(std::uint64_t bytes) : max_bytes(bytes), left(bytes) {}
-  // The error if `path` exceeds the limit.
+  // Returns the error of a `path` that exceeds the limit.
   OutputError exceeded(const std::string& path) const;
 
   std::uint64_t max_bytes;
@@ -51,17 +51,16 @@ class OutputFile {
 
   std::optional<OutputError> write(std::string_view bytes);
   std::optional<OutputError> write(std::span<const std::uint8_t> bytes);
-  // Passes on what has been written, so that a reader of a pipe gets it.
+  // Flushes what has been written to readers of a pipe.
   std::optional<OutputError> flush();
-  // Flushes to the disk, and closes unless standard output: afterwards only the renaming can
-  // fail.
+  // Flushes to the disk, and closes unless standard output: afterwards only renaming can fail.
   std::optional<OutputError> close();
-  // After close(): gives the file its name.
+  // Renames the file to its name, after close().
   std::optional<OutputError> commit();
-  // Whether writing `a` would overwrite `b`: both names refer to the same file, existing or
-  // not. False for devices, pipes and "-".
+  // Returns whether writing `a` would overwrite `b`: both names refer to the same file,
+  // existing or not. False for devices, pipes and "-".
   static bool is_same_file(const std::string& a, const std::string& b);
-  // The name as the caller gave it.
+  // Returns the name that the caller passed.
   const std::string& path() const { return path_; }
 
  private:
@@ -74,7 +73,7 @@ class OutputFile {
         limit_(std::move(limit)) {}
 
   std::string path_;
-  std::string target_;     // links resolved
+  std::string target_;     // path with links resolved
   std::string temporary_;  // empty: written directly, or committed
   std::FILE* file_ = nullptr;
   std::shared_ptr<OutputLimit> limit_;
@@ -83,7 +82,7 @@ class OutputFile {
 // Writes the whole contents and commits.
 std::optional<OutputError> write_and_commit(OutputFile& file, std::string_view bytes);
 
-// A new folder that appears, with all its files, only when complete.
+// New folder that appears, with all its files, only when complete.
 class TemporaryFolder {
  public:
   // Creates a temporary folder next to `path`, or inside it if `path` is a folder.
@@ -91,12 +90,12 @@ class TemporaryFolder {
 
   TemporaryFolder(TemporaryFolder&& other) noexcept;
   TemporaryFolder& operator=(TemporaryFolder&&) = delete;
-  ~TemporaryFolder();  // removes it with its contents unless commit() succeeded
+  ~TemporaryFolder();  // removes the folder with its contents unless commit() succeeded
 
   const std::string& path() const { return path_; }
-  // Flushes it to the disk, with its contents.
+  // Flushes the folder and its contents to the disk.
   std::optional<OutputError> sync() const;
-  // Gives the folder its name, which must not exist.
+  // Renames the folder to `path`, which must not exist.
   std::optional<OutputError> commit(const std::string& path);
   // Moves one of its files to `path`, replacing a file there, as OutputFile does.
   std::optional<OutputError> commit_file(const std::string& name,
@@ -108,7 +107,7 @@ class TemporaryFolder {
   std::string path_;  // empty: committed
 };
 
-// "PATH: cannot WHAT: REASON" with the reason of `code`, an errno value.
+// Returns the error "PATH: cannot WHAT: REASON" with the reason of `code`, an errno value.
 OutputError output_error(const std::string& path, const std::string& what, int code);
 
 }  // namespace rlpc

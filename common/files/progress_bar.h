@@ -1,5 +1,5 @@
-// A progress bar, after some seconds with the time left: only on a terminal, erased when the
-// work is done.
+// Progress bar on a terminal, after some seconds with the time left; erased when the work is
+// done.
 #pragma once
 
 #include <unistd.h>
@@ -25,7 +25,7 @@ class ProgressBar {
     if (shown_) std::fprintf(stderr, "\r\033[K");
   }
 
-  // fraction: 0 to 1
+  // Shows progress. fraction: 0 to 1.
   void show(double fraction) {
     if (!shown_) return;
     const std::chrono::duration<double> past = std::chrono::steady_clock::now() - start_;

@@ -10,8 +10,8 @@ namespace {
 constexpr double kInterval = 1.0;  // seconds between samples
 constexpr double kLeastSeconds = 4.0;
 constexpr double kLeastFraction = 0.01;
-constexpr double kRecent = 0.25;    // of the seconds that have passed
-constexpr double kMostRatio = 1.5;  // of what is left at the recent and the usual pace
+constexpr double kRecent = 0.25;    // recent part of the time that has passed
+constexpr double kMostRatio = 1.5;  // ratio of the estimates from recent and total pace
 
 std::string left_text(double seconds) {
   const auto rounded = [&](long step) {
@@ -39,7 +39,7 @@ std::optional<double> TimeLeft::update(double seconds, double fraction) {
       std::upper_bound(samples_.begin(), samples_.end(), recently,
                        [](double time, const Sample& s) { return time < s.seconds; });
   const Sample& before = *std::prev(after);  // the first is at 0
-  // Nothing is known of the pace since then if no word has come for long.
+  // The recent pace is unknown after a long time without an update.
   if (before.seconds < seconds - 2 * kRecent * seconds) return std::nullopt;
   if (fraction <= before.fraction) return std::nullopt;
   const double usual = seconds * (1.0 - fraction) / fraction;

@@ -1,4 +1,4 @@
-// How long work will still take, by how far it has come.
+// Estimates the time left from the progress of work.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@ namespace rlpc {
 
 class TimeLeft {
  public:
-  // The seconds that are left; none while that cannot be told: in the first seconds, and while
-  // the work goes much faster or slower than before. seconds: since the start, rising;
-  // fraction: done, 0 to 1.
+  // Returns the seconds left; none while they are unknown: in the first seconds, and while work
+  // is much faster or slower than before. seconds: since the start, increasing; fraction: done,
+  // 0 to 1.
   std::optional<double> update(double seconds, double fraction);
 
  private:
@@ -19,11 +19,11 @@ class TimeLeft {
     double seconds = 0.0;
     double fraction = 0.0;
   };
-  // Since the start, a second or more apart.
+  // Samples since the start, at least a second apart.
   std::vector<Sample> samples_{{}};
 };
 
-// "42 %", "42 %, 1 min 20 s left": rounded more where more is left.
+// Formats "42 %" or "42 %, 1 min 20 s left"; longer times are rounded more.
 std::string progress_text(double fraction, std::optional<double> seconds_left);
 
 }  // namespace rlpc

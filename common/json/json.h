@@ -1,5 +1,5 @@
-// Reads and writes JSON: the only calls of the JSON library that parse or print. Nothing of a
-// text is trusted.
+// Reads and writes JSON: the only calls of the JSON library that parse or print. Texts are
+// untrusted.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace rlpc {
 
-// Notes where the parser refuses a text, and skips all else.
+// Finds the place at which the parser rejects a text.
 template <class Json>
 class JsonRefusal : public nlohmann::json_sax<Json> {
  public:
@@ -24,7 +24,7 @@ class JsonRefusal : public nlohmann::json_sax<Json> {
   using typename nlohmann::json_sax<Json>::string_t;
   using typename nlohmann::json_sax<Json>::binary_t;
 
-  // The first byte of what is refused.
+  // Returns the first byte of the token that the parser rejects.
   std::size_t position() const { return position_; }
 
   bool null() override { return true; }
@@ -51,9 +51,9 @@ class JsonRefusal : public nlohmann::json_sax<Json> {
   std::size_t position_ = 0;
 };
 
-// Reads a text; max_bytes: of memory for the tree (json_tree_bytes()). A byte order mark before
-// it and zero bytes behind it are skipped. Returns none if there is a problem. Cost: linear in
-// the text and, for names of members, in the logarithm of their number.
+// Reads a text; none if there is a problem. Skips a byte order mark before it and zero bytes
+// after it. max_bytes: memory for the tree (json_tree_bytes()). Cost: linear in the text, times
+// the logarithm of their number for names of members.
 template <class Json>
 std::optional<Json> read_json(std::string_view text, std::uint64_t max_bytes,
                               JsonProblem& problem) {
@@ -75,8 +75,8 @@ std::optional<Json> read_json(std::string_view text, std::uint64_t max_bytes,
   return std::nullopt;
 }
 
-// Returns the text of a value; invalid UTF-8 in strings is replaced. indent: of a level; -1: on
-// one line. ascii: escapes all other characters.
+// Returns the text of a value; invalid UTF-8 in strings is replaced. indent: spaces per level;
+// -1: one line. ascii: escapes all other characters.
 template <class Json>
 std::string json_text(const Json& json, int indent = -1, bool ascii = false) {
   return json.dump(indent, ' ', ascii, Json::error_handler_t::replace);

@@ -6,7 +6,7 @@
 namespace rlpc {
 namespace {
 
-// Bounds the time for members of objects: about a second, and more for long texts.
+// Returns a bound of the time for members of objects: about a second, and more for long texts.
 std::uint64_t max_comparisons(std::string_view text) {
   constexpr std::uint64_t kOfAnyText = 100'000'000;
   constexpr std::uint64_t kOfByte = 64;

@@ -9,7 +9,7 @@ namespace {
 
 class JsonScanner {
  public:
-  // shape: null: nothing is counted, and any depth is allowed.
+  // shape: null to count nothing and to allow any depth.
   explicit JsonScanner(std::string_view text, JsonShape* shape = nullptr)
       : text_(text), shape_(shape) {}
 
@@ -18,7 +18,7 @@ class JsonScanner {
   bool is_too_deep() const { return too_deep_; }
 
  private:
-  // -1 at the end.
+  // Returns the next byte; -1 at the end.
   int next() const {
     return pos_ < text_.size() ? static_cast<unsigned char>(text_[pos_]) : -1;
   }
@@ -53,11 +53,11 @@ class JsonScanner {
 
   std::string_view text_;
   std::size_t pos_ = 0;
-  Vector<char> open_;  // the closing brackets due, if depth is not limited
+  Vector<char> open_;  // closing brackets due, if depth is not limited
   JsonShape* shape_;
   std::size_t depth_ = 0;
-  std::array<char, kMaxJsonDepth> due_{};               // the same, if it is
-  std::array<std::uint64_t, kMaxJsonDepth> members_{};  // so far, of the objects that are open
+  std::array<char, kMaxJsonDepth> due_{};  // closing brackets due, if depth is limited
+  std::array<std::uint64_t, kMaxJsonDepth> members_{};  // members so far of the open objects
   bool too_deep_ = false;
 };
 
@@ -125,7 +125,7 @@ bool JsonScanner::escape() {
   return true;
 }
 
-// RFC 3629: not overlong, not a surrogate, not above U+10FFFF.
+// Scans a character by RFC 3629: not overlong, not a surrogate, not above U+10FFFF.
 bool JsonScanner::utf8_character() {
   const int lead = next();
   if (lead < 0x80) return ++pos_, true;
@@ -182,7 +182,7 @@ bool JsonScanner::key() {
   return take(':');
 }
 
-// A value, or the beginning of an array or object.
+// Scans a value, or the beginning of an array or object.
 bool JsonScanner::begin_value(bool& complete) {
   skip_space();
   count_element();
@@ -198,7 +198,7 @@ bool JsonScanner::begin_value(bool& complete) {
   return !object || key();
 }
 
-// What follows a value; incomplete if another one is due.
+// Scans what follows a value; incomplete if another value is due.
 bool JsonScanner::end_value(bool& complete) {
   for (;;) {
     skip_space();
@@ -235,12 +235,12 @@ std::optional<JsonFault> measure_json(std::string_view text, JsonShape& shape) {
   return JsonFault{scanner.is_too_deep(), scanner.position()};
 }
 
-// Values take 16 bytes in arrays, 48 in objects, whose capacity doubles: up to twice that, and
-// half as much again while it does. Strings, arrays and objects take 32 bytes in another block,
-// and 16 of the allocator's for that and for their contents. An object that grows copies what
-// is in it, once. Characters are in the buffer of the parser, in strings whose capacity may be
-// double, and in a copy; a text that is printed is a string that doubles, too. Each value can
-// have a line of it, and its brackets another.
+// Values take 16 bytes in arrays and 48 in objects, whose capacity doubles: up to twice that,
+// and half as much again while it grows. Strings, arrays and objects take 32 bytes in another
+// block, and 16 of the allocator's for that block and for their contents. An object that grows
+// copies its contents once. Characters are in the buffer of the parser, in strings whose
+// capacity may be double, and in a copy; a printed text is also a string that doubles. Each
+// value can have a line of the text, and its brackets another.
 std::uint64_t json_tree_bytes(const JsonShape& shape, std::size_t text_bytes) {
   constexpr std::uint64_t kOfElement = 64;
   constexpr std::uint64_t kOfMember = 240;

@@ -14,7 +14,7 @@ constinit thread_local const Owner* owner_of_thread = nullptr;
 
 constexpr std::size_t kOwnerBytes = sizeof(const Owner*);  // NOLINT(bugprone-sizeof-expression)
 
-// The owner is stored before the block.
+// Returns the bytes before a block, which store its owner.
 std::size_t bytes_before(std::size_t alignment) {
   return std::max(alignment, alignof(std::max_align_t));
 }

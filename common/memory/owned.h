@@ -1,10 +1,10 @@
-// Containers and objects whose memory comes from an owner: in the C library of the decoder
-// (RLPC_OWNED_MEMORY), the callbacks of the handle in use; elsewhere, they are those of the
-// standard library.
+// Containers and objects whose memory comes from an owner. In the C library of the decoder
+// (RLPC_OWNED_MEMORY), the owner is the callbacks of the handle in use; elsewhere, containers
+// are those of the standard library.
 //
-// The allocator has no state. Each block remembers its owner, so that it can be released by any
-// thread and within any call; a new block gets the owner of the thread. The functions in C set
-// it for the time of a call, and threads that work for them take it over.
+// The allocator has no state. Each block records its owner, so that any thread can release it
+// within any call; a new block gets the owner of the thread. The C functions set it during a
+// call, and threads that work for them inherit it.
 #pragma once
 
 #include <cstddef>
@@ -27,10 +27,10 @@ struct Owner {
 
 #ifdef RLPC_OWNED_MEMORY
 
-// Of the thread; null: memory comes from operator new.
+// Returns the owner of the thread; null: memory comes from operator new.
 const Owner* current_owner();
 
-// Sets the owner of the thread.
+// Sets the owner of the thread during its lifetime.
 class OwnerScope {
  public:
   explicit OwnerScope(const Owner* owner);
@@ -48,7 +48,7 @@ void release_owned(void* place, std::size_t size, std::size_t alignment) noexcep
 
 template <class T>
 struct OwnedAllocator {
-  using value_type = T;  // NOLINT(readability-identifier-naming): of the standard
+  using value_type = T;  // NOLINT(readability-identifier-naming): name of the standard
   OwnedAllocator() = default;
   template <class U>
   OwnedAllocator(const OwnedAllocator<U>&) {}  // NOLINT(google-explicit-constructor): converts
@@ -68,7 +68,7 @@ struct OwnedAllocator {
   }
 };
 
-// The base of objects that std::make_unique makes.
+// Base of objects that std::make_unique makes.
 struct Owned {
   static void* operator new(std::size_t size) {
     return allocate_owned(size, alignof(std::max_align_t));

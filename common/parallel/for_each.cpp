@@ -17,7 +17,7 @@ class ThreadPool::Impl : public Owned {
     others_.reserve(count - 1);
     try {
       while (others_.size() + 1 < count) others_.emplace_back([this] { help(); });
-    } catch (const std::exception&) {  // with the threads that there are
+    } catch (const std::exception&) {  // continue with fewer threads
     }
   }
   ~Impl() {
@@ -31,7 +31,7 @@ class ThreadPool::Impl : public Owned {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  static thread_local Impl* of_thread;  // the pool that it uses
+  static thread_local Impl* of_thread;  // pool in use by the thread
   bool has_others() const { return !others_.empty(); }
 
   void run(std::size_t count, const Pass& pass) {
@@ -40,8 +40,8 @@ class ThreadPool::Impl : public Owned {
     loops_.push_back(&loop);
     change();
     while (loop.is_open()) run_passes(loop, lock);
-    // Others are in passes of this loop: helps those that are no further out than it, so that
-    // the thread is never within two passes of a depth.
+    // Other threads are in passes of this loop: helps loops that are no further out, so that
+    // this thread is never within two passes of a depth.
     while (loop.threads > 0) {
       Loop* const inner = innermost(loop.depth);
       if (inner != nullptr) {
@@ -60,14 +60,14 @@ class ThreadPool::Impl : public Owned {
     std::size_t count = 0;
     std::size_t depth = 0;  // 1: not within a pass of another loop
     std::atomic<std::size_t> next = 0;
-    std::size_t threads = 0;  // that are within it
+    std::size_t threads = 0;  // number of threads within the loop
     std::exception_ptr failure = {};
-    const Owner* owner = current_owner();  // of memory
+    const Owner* owner = current_owner();  // memory of the loop
 
     bool is_open() const { return next.load(std::memory_order_relaxed) < count; }
   };
 
-  // Of those that are open.
+  // Returns the innermost open loop at least_depth or deeper.
   Loop* innermost(std::size_t least_depth) const {
     Loop* found = nullptr;
     for (Loop* const loop : loops_) {
@@ -115,14 +115,15 @@ class ThreadPool::Impl : public Owned {
     }
   }
 
-  // With the lock: a loop began, or its last pass is done; or ends_.
+  // Reports, with the lock, that a loop began, that its last pass is done, or that ends_ is
+  // set.
   void change() {
     ++changes_;
     if (sleepers_ > 0) changed_.notify_all();
   }
 
-  // Until a change. Loops over the vertices of a layer are short and follow each other closely,
-  // so a thread does not sleep at once: to wake it takes longer than such a loop.
+  // Waits for a change. Loops over the vertices of a layer are short and follow each other
+  // closely, so a thread does not sleep at once: waking it takes longer than such a loop.
   void wait(std::unique_lock<std::mutex>& lock) {
     const std::size_t changes = changes_;
     lock.unlock();
@@ -133,11 +134,11 @@ class ThreadPool::Impl : public Owned {
     --sleepers_;
   }
 
-  // Inter GOFs with learned weights are coded 1.5 times as fast on two cores, and decoded
-  // as much; 1.2 and 1.35 times without. Half and twice as many do about the same (cow,
-  // knight).
+  // Yields before sleeping. On two cores, inter GOFs with learned weights are coded and decoded
+  // 1.5 times as fast, without yields 1.2 and 1.35 times. Half and twice as many yields do
+  // about the same (cow, knight).
   static constexpr int kYields = 200;
-  static thread_local std::size_t depth_of_thread;  // of the pass that it is in
+  static thread_local std::size_t depth_of_thread;  // depth of its current pass
 
   std::mutex mutex_;
   std::condition_variable changed_;

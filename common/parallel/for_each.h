@@ -1,6 +1,5 @@
-// Loops on several threads. A result must not depend on which thread runs which pass, nor on
-// how many threads there are: passes write to places of their own, and sums over them are made
-// afterwards, in order.
+// Loops on several threads. A result must not depend on the thread that runs a pass or on the
+// number of threads: passes write to separate places, and are summed afterwards, in order.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +11,12 @@
 
 namespace rlpc {
 
-// A function that is called while the caller of for_each() waits: it is not copied.
+// Reference to a function that is called while the caller of for_each() waits.
 template <class... Args>
 class FunctionRef {
  public:
   template <class F>
-  FunctionRef(const F& f)  // NOLINT(google-explicit-constructor): any function will do
+  FunctionRef(const F& f)  // NOLINT(google-explicit-constructor): takes any function
       : function_(&f), call_([](const void* function, Args... args) {
           (*static_cast<const F*>(function))(args...);
         }) {}
@@ -34,16 +33,15 @@ class ThreadPool {
   class Impl;
 
  public:
-  // count: threads in all, at least 1, one of them the user's. Where the system grants fewer,
-  // there are fewer.
+  // count: number of threads including the user's, at least 1. The system may grant fewer.
   explicit ThreadPool(std::uint32_t count);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  // While it exists, for_each() on the thread that made it shares its passes with the threads
-  // of the pool. Several threads may use a pool at a time. Uses on a thread end in reverse
-  // order.
+  // Shares the passes of for_each() on the thread that made it with the threads of the pool,
+  // during its lifetime. Several threads may use a pool at a time. Uses on a thread end in
+  // reverse order.
   class Use {
    public:
     explicit Use(ThreadPool& pool);
@@ -61,7 +59,7 @@ class ThreadPool {
   std::unique_ptr<Impl> impl_;
 };
 
-// A pool that is used by the thread that makes it, as long as it exists.
+// Pool that the thread that makes it uses during its lifetime.
 class Threads {
  public:
   explicit Threads(std::uint32_t count) : pool_(count), use_(pool_) {}
@@ -72,11 +70,11 @@ class Threads {
 };
 
 // Calls pass(i) for all i < count, in any order, and returns once all are done. A pass may
-// itself contain such loops; at any time, a thread is within at most one pass of each depth. If
-// a pass throws, no further ones begin, and the exception is rethrown here.
+// contain such loops; at any time, a thread is within at most one pass of each depth. If a pass
+// throws, no further passes begin, and the exception is rethrown here.
 void for_each(std::size_t count, const Pass& pass);
 
-// The same for ranges of `together` numbers below `count`: range(first, end).
+// Calls range(first, end) for ranges of up to `together` numbers below `count`.
 inline void for_ranges(std::size_t count, std::size_t together,
                        const FunctionRef<std::size_t, std::size_t>& range) {
   for_each((count + together - 1) / together,

@@ -1,4 +1,4 @@
-// The same where there are no threads (pages in browsers).
+// Implements for_each.h without threads (pages in browsers).
 #include "common/parallel/for_each.h"
 
 namespace rlpc {

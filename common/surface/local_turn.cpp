@@ -10,12 +10,12 @@ using Vec3 = LocalTurn::Vec3;
 using Vec4 = std::array<double, 4>;
 using Matrix4 = std::array<Vec4, 4>;
 
-// Relative to what it would be for a rotation that is certain.
+// Limit relative to the value for a certain rotation.
 constexpr double kUncertain = 1e-12;
 
 double square_of(const Vec3& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
-// Horn's matrix, of the products of vectors. Its trace is 0.
+// Returns Horn's matrix of the products of vectors. Its trace is 0.
 Matrix4 horn_matrix(const std::array<Vec3, 3>& s) {
   const double x = s[1][2] - s[2][1];
   const double y = s[2][0] - s[0][2];
@@ -81,11 +81,12 @@ class Cofactors {
   std::array<double, 6> lower_{};
 };
 
-// The largest root of the characteristic polynomial x^4 + c2 x^2 + c1 x + c0, from a bound of
-// it.
+// Returns the largest root of the characteristic polynomial x^4 + c2 x^2 + c1 x + c0, starting
+// from an upper bound.
 double largest_eigenvalue(const Matrix4& m, double bound) {
-  constexpr int kSteps = 50;            // fixed: more than a double root takes
-  constexpr double kSmallStep = 1e-13;  // fixed: of the bound; further ones are rounding
+  constexpr int kSteps = 50;  // fixed: more than a double root takes
+  constexpr double kSmallStep =
+      1e-13;  // fixed: relative to the bound; smaller steps are rounding errors
   double c2 = 0.0;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) c2 -= 0.5 * m[i][j] * m[i][j];
@@ -132,7 +133,7 @@ bool LocalTurn::find() {
     for (double& x : area_after_) x /= root_after;
     add_edge(area_before_, area_after_);
   }
-  // By Cauchy and Schwarz; reached where vectors are turned and scaled.
+  // Cauchy-Schwarz bound; equality where vectors are only rotated and scaled.
   const double bound = std::sqrt(squares_before_ * squares_after_);
   if (!(bound > 0.0)) return false;
   for (Vec3& row : products_) {
@@ -141,7 +142,7 @@ bool LocalTurn::find() {
   Matrix4 m = horn_matrix(products_);
   const double largest = largest_eigenvalue(m, 1.0);
   for (std::size_t i = 0; i < 4; ++i) m[i][i] -= largest;
-  // The cofactors are the products of the parts of the quaternion, times their sum of squares.
+  // The cofactors are products of the parts of the quaternion, times their sum of squares.
   const Matrix4 a = Cofactors(m).adjugate();
   const double squares = a[0][0] + a[1][1] + a[2][2] + a[3][3];
   if (!(std::abs(squares) > kUncertain)) return false;

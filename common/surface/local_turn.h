@@ -1,4 +1,4 @@
-// How the surface around a vertex turns from one frame to another (F.8.5).
+// Rotation of the surface around a vertex from one frame to another (F.8.5).
 #pragma once
 
 #include <array>
@@ -11,19 +11,19 @@
 
 namespace rlpc {
 
-// The rotation that brings vectors nearest to what they become, in the sense of least squares
-// (Horn 1987). Its quaternion belongs to the largest eigenvalue of a matrix of their products,
-// which Newton's method reaches from above (Theobald 2005).
+// Least-squares rotation from vectors before to vectors after (Horn 1987). Its quaternion is
+// the eigenvector of the largest eigenvalue of a matrix of their products, which Newton's
+// method reaches from above (Theobald 2005).
 class LocalTurn {
  public:
   using Vec3 = std::array<double, 3>;
 
   void add_edge(const Vec3& before, const Vec3& after);
-  // The normal of a triangle, as long as its area, or twice that, before and after.
+  // Adds the normal of a triangle before and after, as long as its area, or twice its area.
   void add_area(const Vec3& before, const Vec3& after);
   // Finds the rotation, after all edges and areas. The sum of the areas counts as a vector
-  // along the normal, whose squared length is the area. False: no rotation is the nearest, as
-  // where all is on a line; vectors then stay as they are.
+  // along the normal, whose squared length is the area. Returns false if the rotation is not
+  // unique, as for collinear vectors; vectors then stay unchanged.
   bool find();
   Vec3 turned(const Vec3& vector) const;
   // Undoes turned().
@@ -31,15 +31,15 @@ class LocalTurn {
 
  private:
   std::array<Vec3, 3> products_{};  // [before][after]
-  double squares_before_ = 0.0;     // of the lengths of all vectors
+  double squares_before_ = 0.0;     // sum of the squared lengths of all vectors
   double squares_after_ = 0.0;
   Vec3 area_before_{};
   Vec3 area_after_{};
   std::array<Vec3, 3> rotation_{{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
 };
 
-// Adds the surface around a vertex, which is that of its corners: the edges and areas of their
-// triangles. before, after: [vertex][3].
+// Adds the surface around the corners of a vertex: the edges and areas of their triangles.
+// before, after: [vertex][3].
 template <class Before, class After>
 void add_surroundings(std::span<const Triangle> triangles,
                       std::span<const std::uint32_t> corners, std::span<const Before> before,

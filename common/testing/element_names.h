@@ -1,4 +1,4 @@
-// A trace as text, for tests: "name value value\nname value ...".
+// Trace as text, for tests: "name value value\nname value ...".
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class ElementNames final : public Trace {
     before_ = bit_pos;
   }
   std::string text;
-  bool in_order = true;  // positions never decrease
+  bool in_order = true;  // whether positions never decrease
 
  private:
   std::string last_;

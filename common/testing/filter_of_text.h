@@ -1,4 +1,4 @@
-// 8.15 Adaptive weights of one vertex, written as the pseudo-code is, with the widths that the
+// 8.15 Adaptive weights of one vertex, a transcript of the pseudo-code with the widths that the
 // text states; for tests.
 #pragma once
 
@@ -19,14 +19,14 @@ struct FilterOfText {
 
   static constexpr std::int64_t kMaxWeight = (1 << 19) - 1;
 
-  // Of 8.15; those of 8.19 if is_of_frames.
+  // Ranges of 8.15, or of 8.19 if is_of_frames.
   bool is_of_frames = false;
   std::size_t ring = 0;
   std::size_t neighbours = 0;  // 8.19: ring and others
   List weight;
   std::vector<List> spread;
 
-  // shift: 12, or 9 at later component groups.
+  // shift: 12, or 9 in later component groups.
   void start_spread(int shift) {
     spread.assign(weight.size(), List(weight.size(), 0));
     for (std::size_t i = 0; i < weight.size(); ++i) spread[i][i] = random_walk(i) << shift;
@@ -55,7 +55,7 @@ struct FilterOfText {
     return round2(sum, 16);
   }
 
-  // variance: of 8.19.
+  // variance: of the residual, for 8.19.
   void adapt(const List& offsets, std::int64_t error, std::int64_t variance = 0) {
     const std::size_t n = offsets.size();
     const int bits = is_of_frames ? 11 : 7;

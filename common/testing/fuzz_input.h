@@ -1,4 +1,4 @@
-// Shared by the fuzz targets: parsing of inputs, and checks that are active in every build.
+// Input parsing of the fuzz targets, and checks that are active in every build.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ class FuzzInput {
  public:
   FuzzInput(const std::uint8_t* data, std::size_t size) : rest_(data, size) {}
 
-  // Little-endian, 1 to 4 bytes.
+  // Reads a little-endian number of 1 to 4 bytes.
   std::uint32_t number(std::size_t bytes) {
     std::uint32_t value = 0;
     const auto digits = take(bytes);

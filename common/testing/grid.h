@@ -1,4 +1,4 @@
-// A mesh for tests of layers.
+// Mesh for tests of layers.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace rlpc {
 
-// The triangles of a grid of squares; vertices are ordered by row. closed: it wraps in both
-// directions, to a torus.
+// Returns the triangles of a grid of squares; vertices are ordered by row. closed: the grid
+// wraps in both directions to a torus.
 inline std::vector<Triangle> grid_triangles(std::uint32_t width, std::uint32_t height,
                                             bool closed) {
   std::vector<Triangle> triangles;

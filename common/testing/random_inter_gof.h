@@ -12,7 +12,7 @@
 
 namespace rlpc {
 
-// Any legal pattern. below(n): a random number below n.
+// Returns any legal pattern. below(n): a random number below n.
 template <class Below>
 FramePattern random_frame_pattern(const Below& below) {
   FramePattern pattern;
@@ -55,7 +55,7 @@ FramePattern random_frame_pattern(const Below& below) {
   return pattern;
 }
 
-// Any legal settings of an inter GOF. below(n): as above.
+// Returns any legal settings of an inter GOF. below(n): a random number below n.
 template <class Below>
 InterGof random_frame_settings(const OrderedMesh& mesh, std::uint32_t num_frames,
                                const Below& below) {
@@ -99,11 +99,11 @@ InterGof random_frame_settings(const OrderedMesh& mesh, std::uint32_t num_frames
   return gof;
 }
 
-// Any legal settings, residuals of any size, and layer groups and frames that are absent from
-// some frame on.
+// Returns an inter GOF with any legal settings, residuals of any size, and layer groups and
+// frames that are absent from some frame on.
 inline InterGof random_inter_gof(std::uint64_t seed, const OrderedMesh& mesh,
                                  std::uint32_t num_frames) {
-  // The high bits of Knuth's linear congruential generator.
+  // Returns the high bits of Knuth's linear congruential generator.
   const auto random = [&seed] {
     seed = seed * 6364136223846793005U + 1442695040888963407U;
     return static_cast<std::uint32_t>(seed >> 32);
@@ -117,7 +117,7 @@ inline InterGof random_inter_gof(std::uint64_t seed, const OrderedMesh& mesh,
   const FrameOrder order(gof.pattern, num_frames);
   for (std::uint32_t place = 0; place < num_frames; ++place) {
     InterFrame& frame = (*frames)[order[place].frame];
-    // No more layer groups than the frames before of the same and lower temporal layers.
+    // At most as many layer groups as earlier frames of the same and lower temporal layers.
     std::uint32_t& groups = most[gof.pattern.temporal_layer(order[place].depth)];
     if (below(8) == 0) groups = below(groups + 1);
     for (std::size_t t = 1; t < most.size(); ++t) most[t] = std::min(most[t], most[t - 1]);

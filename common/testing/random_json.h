@@ -1,4 +1,4 @@
-// JSON texts that attack parsers: nested, wide, long, repeated, in random mixtures. For tests.
+// Random JSON texts that attack parsers: nested, wide, long and repeated mixtures. For tests.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ class RandomJson {
  public:
   explicit RandomJson(std::uint32_t seed) : state_(seed) {}
 
-  // A valid text of about `bytes` bytes, nested at most max_depth levels deep.
+  // Returns a valid text of about `bytes` bytes, nested at most max_depth levels deep.
   std::string text(std::size_t bytes, int max_depth) {
     const std::size_t kind = below(6);
     if (kind == 0) return nested(max_depth, bytes);
@@ -24,7 +24,7 @@ class RandomJson {
   }
 
  private:
-  // Linear congruential (Numerical Recipes), without its weak low bits.
+  // Linear congruential generator (Numerical Recipes), without its weak low bits.
   std::uint32_t next() {
     state_ = state_ * 1664525U + 1013904223U;
     return state_ >> 8;
@@ -65,7 +65,7 @@ class RandomJson {
       const bool is_object = has_objects && below(2) == 0;
       out += is_object ? "{" + name() + ":" : "[";
       end.insert(0, is_object ? "}" : "]");
-      // Siblings behind make what holds them grow.
+      // Later siblings make their parent grow.
       for (std::size_t i = below(4); i > 0 && out.size() < bytes; --i) {
         end.insert(0, is_object ? "," + name() + ":0" : ",0");
       }

@@ -23,8 +23,8 @@ struct SkinnedGofSizes {
   std::uint32_t max_bones = 6;
   std::uint32_t max_groups = 4;
   std::uint32_t max_components = 4;  // per group
-  bool rest_order = true;            // in some
-  bool temporal_layers = true;       // in some
+  bool rest_order = true;            // allowed; some GOFs have it
+  bool temporal_layers = true;       // allowed; some GOFs have them
 };
 
 class RandomSkinnedGof {
@@ -54,7 +54,7 @@ class RandomSkinnedGof {
   static constexpr int kResidualBits = 28;  // maximum width of a magnitude
   static_assert(kMaxResidual == (1U << kResidualBits) - 1);
 
-  // The high bits of Knuth's linear congruential generator.
+  // Returns the high bits of Knuth's linear congruential generator.
   std::uint32_t random() {
     state_ = state_ * 6364136223846793005U + 1442695040888963407U;
     return static_cast<std::uint32_t>(state_ >> 33);
@@ -67,7 +67,7 @@ class RandomSkinnedGof {
     if (kind == 1) return most;
     return least + static_cast<int>(below(static_cast<std::uint32_t>(most - least + 1)));
   }
-  // A residual within this many bits, but occasionally of any size.
+  // Returns a residual within `bits` bits, but occasionally of any size.
   std::int32_t residual(int bits) {
     if (random() % 64 == 0) bits = kResidualBits;
     const std::uint32_t range = std::uint32_t{1} << bits;
@@ -86,7 +86,7 @@ class RandomSkinnedGof {
 
   int order_of_track() { return gof.track_levels > 0 ? between(0, kMaxBetween) : 0; }
 
-  // A sheet with holes and stray triangles.
+  // Makes a sheet with holes and stray triangles.
   void make_mesh(const SkinnedGofSizes& sizes) {
     const std::uint32_t n = 1 + below(sizes.max_vertices);
     const std::uint32_t width = 1 + below(8);
@@ -161,7 +161,7 @@ class RandomSkinnedGof {
     }
   }
 
-  // Each component group has at most as many temporal layers as the one before, and none
+  // Each component group has at most as many temporal layers as the previous one, and none
   // without its trajectories.
   void drop_temporal_layers() {
     auto present = static_cast<std::uint32_t>(gof.num_temporal_layers) - 1;
@@ -200,7 +200,7 @@ class RandomSkinnedGof {
     gof.rest.counterparts_flag = coin();
   }
 
-  // What is legal at each vertex, if its slice is present.
+  // Makes any legal counterpart at each vertex whose slice is present.
   void make_counterparts() {
     gof.counterparts.resize(header.num_vertices);
     if (gof.slice_layers[0] == 0) return;
@@ -236,7 +236,7 @@ class RandomSkinnedGof {
     return t;
   }
 
-  // The slices present, none to all: each group has at most as many layers as the previous one.
+  // Makes slices, none to all: each group has at most as many layers as the previous one.
   void make_slices(const OrderedMesh& mesh, const SkinnedGofSizes& sizes) {
     gof.num_component_groups = below(sizes.max_groups + 1);
     gof.slice_layers.clear();
@@ -273,7 +273,7 @@ class RandomSkinnedGof {
     return sum;
   }
 
-  // As parsed; predicted for absent layers.
+  // Makes influences as a parser would; absent layers have predicted ones.
   void make_influences(const OrderedMesh& mesh) {
     gof.influences.assign(mesh.num_vertices(), {});
     const auto num_bones = static_cast<std::uint32_t>(gof.bones.size());

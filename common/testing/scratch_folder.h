@@ -1,4 +1,4 @@
-// A folder of its own for each test, removed afterwards.
+// Gives each test a separate folder, removed afterwards.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class ScratchFolderTest : public testing::Test {
     text << std::ifstream(path(name), std::ios::binary).rdbuf();
     return text.str();
   }
-  // Returns the path of the file.
+  // Writes a file and returns its path.
   std::string put(const std::string& name, const std::string& bytes) const {
     std::ofstream(path(name), std::ios::binary) << bytes;
     return path(name);

@@ -1,4 +1,5 @@
-// A section (9.3) bin by bin, including ones that no writer produces, for tests of parsers.
+// Writes a section (9.3) bin by bin, including sections that no writer produces, for tests of
+// parsers.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +40,7 @@ class SectionRecipe {
     }
     if (value != 0) section.bypass(1, value < 0 ? 1 : 0);
   }
-  // 9.5.4: a difference.
+  // 9.5.4: writes a difference.
   void header_delta(ResidualModels& models, std::uint32_t& mean, std::int32_t delta) {
     residual(models, mean >> 4, delta);
     mean = update_mean(mean, magnitude_of(delta), 2);

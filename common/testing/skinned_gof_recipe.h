@@ -1,5 +1,5 @@
-// Units of a skinned GOF element by element, including ones that no writer produces, for tests
-// of parsers. Residuals are 0.
+// Writes units of a skinned GOF element by element, including units that no writer produces,
+// for tests of parsers. Residuals are 0.
 #pragma once
 
 #include <array>
@@ -30,21 +30,21 @@ struct BoneRecipe {
   std::uint32_t origin_between = 0;
 };
 
-// 6.5 and 6.11, of a GOF that begins with frame 0; 6.13, of a shared rig; and 6.13.1, of a
-// GOF that uses it.
+// Units of a GOF that begins with frame 0 (6.5 and 6.11), of a shared rig (6.13), and of a GOF
+// that uses it (6.13.1).
 struct SkinnedGofRecipe {
   std::uint32_t num_gof_frames_minus1 = 0;
   std::uint32_t fraction_bits = 0;
   std::uint32_t weight_bits = 0;
   std::uint32_t rest_step_minus1 = 0;
   std::uint32_t num_component_groups = 0;
-  std::optional<std::uint32_t> track_levels;  // of the High profile
+  std::optional<std::uint32_t> track_levels;  // High profile only
   std::uint32_t num_temporal_layers_minus1 = 0;
   std::uint32_t prediction_idc = 0;
   std::uint32_t damping_log2 = 0;
   std::uint32_t outer_weight = 0;
   std::uint32_t outer_scale = 0;
-  // Of the High profile: set in all GOFs of it.
+  // High profile only; set in all its GOFs.
   std::optional<std::uint32_t> num_adaptive_factors;
   bool rest_order_flag = false;
   std::uint32_t rest_edge_weight = 0;
@@ -158,7 +158,7 @@ struct SkinnedGofRecipe {
   }
 };
 
-// 6.12: the first slice of component group 0 or 1, or of a group with tracks only.
+// 6.12: writes the first slice of component group 0 or 1, or of a group with tracks only.
 class SliceRecipe : public SectionRecipe {
  public:
   SliceRecipe(std::uint32_t component_group_idx, std::uint32_t layer_group_idx)
@@ -179,7 +179,7 @@ class SliceRecipe : public SectionRecipe {
     for (std::uint32_t k = 4; k < temporal_predictor; ++k) section.bypass(9, temporal_weight);
     for (std::uint32_t i = 0; i < 3 * num_frames; ++i) residual(models.trajectory[0], 0, 0);
   }
-  // 6.12.1, of a shared rig.
+  // 6.12.1: spatial header in a shared rig.
   void spatial_header(std::int32_t spatial_bits_delta) {
     field(HeaderField::kSpatialBits, spatial_bits_delta);
   }
@@ -193,7 +193,8 @@ class SliceRecipe : public SectionRecipe {
     truncated_unary(models.temporal_predictor, 0);
     for (std::uint32_t i = 0; i < 3 * num_frames; ++i) residual(models.trajectory[0], 0, 0);
   }
-  // Of the first vertex: bones, and weights minus 1, of this many bits each.
+  // Writes extra bones of the first vertex: bones and weights minus 1 in bone_bits and
+  // weight_bits.
   void extra_bones(std::span<const std::pair<std::uint32_t, std::uint32_t>> bones,
                    int bone_bits, int weight_bits) {
     for (std::size_t i = 0; i < bones.size(); ++i) {

@@ -1,4 +1,4 @@
-// A random skinned GOF divided into a shared rig and a GOF that uses it, for tests.
+// Divides a random skinned GOF into a shared rig and a GOF that uses it, for tests.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// The bones and trajectories of a shared rig have no motion.
+// Removes the motion of bones and trajectories, which a shared rig does not have.
 inline void remove_motion(SharedRig& rig) {
   for (Bone& bone : rig.bones) {
     Bone still;
@@ -37,16 +37,16 @@ class SplitSkinnedGof {
     make_rig(of_rig);
     make_tracks(of_rig);
     if (tracks.trajectories.size() == whole.gof.trajectories.size()) return;
-    // Without tracks: as if they were zero.
+    // Absent tracks count as zero.
     for (std::size_t l = tracks.trajectories.size(); l < whole.gof.trajectories.size(); ++l) {
       make_still(whole.gof.trajectories[l]);
     }
   }
 
-  RandomSkinnedGof whole;  // with all component groups, in one GOF
+  RandomSkinnedGof whole;  // all component groups in one GOF
   std::uint32_t rig_idx = 0;
-  std::shared_ptr<const SharedRig> rig;  // with its first component groups
-  SkinnedGof tracks;                     // with the motion, and the other groups
+  std::shared_ptr<const SharedRig> rig;  // its first component groups
+  SkinnedGof tracks;                     // the motion, and the other groups
 
  private:
   void make_rig(std::size_t of_rig) {
@@ -64,7 +64,8 @@ class SplitSkinnedGof {
 
   void make_tracks(std::size_t of_rig) {
     const SkinnedGof& gof = whole.gof;
-    const std::size_t with_slices = gof.group_end.size();  // groups, with that of influences
+    const std::size_t with_slices =
+        gof.group_end.size();  // groups, including the group of influences
     tracks = gof;
     tracks.kind = GofKind::kSharedRig;
     tracks.rig = rig;
@@ -93,7 +94,7 @@ class SplitSkinnedGof {
       make_still(whole.gof.trajectories[l]);
     }
   }
-  // Some of the groups of the rig have no tracks.
+  // Drops the tracks of some of the last groups of the rig.
   void drop_last_tracks(std::size_t with_slices) {
     std::size_t kept = with_slices;
     while (kept > 1 && random() % 3 == 0) --kept;
@@ -103,7 +104,7 @@ class SplitSkinnedGof {
       if (!tracks.temporal_layers.empty()) tracks.temporal_layers[group] = 0;
     }
   }
-  // As that of RandomSkinnedGof.
+  // Returns random bits by the generator of RandomSkinnedGof.
   std::uint32_t random() {
     state_ = state_ * 6364136223846793005U + 1442695040888963407U;
     return static_cast<std::uint32_t>(state_ >> 33);

@@ -1,4 +1,4 @@
-// A mesh for tests that encode.
+// Mesh for tests that encode.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-// The triangles of a tube that is open at both ends; vertices are ordered by ring.
+// Returns the triangles of a tube that is open at both ends; vertices are ordered by ring.
 inline std::vector<Triangle> tube_triangles(std::uint32_t rings, std::uint32_t sides) {
   std::vector<Triangle> list;
   for (std::uint32_t r = 0; r + 1 < rings; ++r) {

@@ -1,9 +1,9 @@
-// Decodes a stream while it is being written: what an encoder verifies its work by.
+// Decodes a stream while it is being written, so that the encoder can verify it.
 //
-// An encoder cannot tell by its own reconstruction whether it has kept its promises. So it
-// decodes what it has written, by the decoder that its users have. encoder/ and decoder/ do not
-// include each other: the encoder calls these functions, decoder/verify/ implements them, and
-// they meet when a program is linked.
+// The encoder's own reconstruction cannot prove that it kept its promises, so it decodes what
+// it has written with the decoder of its users. encoder/ and decoder/ do not include each
+// other: the encoder calls these functions, decoder/verify/ implements them, and the linker
+// connects them.
 #pragma once
 
 #include <cstdint>
@@ -23,18 +23,18 @@ class FrameReader {
   FrameReader& operator=(const FrameReader&) = delete;
   virtual ~FrameReader() = default;
 
-  // Decodes the next frame into positions [num_vertices][3], in grid units and in the order in
-  // which decoders output vertices. To be called only for frames whose GOF is in the buffer
-  // whole; in an open-ended stream, for frames of an inter GOF whose units are. The first
-  // call decodes attributes and asset, too. Returns what is wrong with the stream.
+  // Decodes the next frame into positions [num_vertices][3], grid units, in output order. May
+  // be called only for frames whose GOF is in the buffer whole or, in an inter GOF of an
+  // open-ended stream, whose units are. The first call also decodes attributes and asset.
+  // Returns the error of the stream, if any.
   virtual std::optional<std::string> next_frame(std::span<std::int32_t> positions) = 0;
-  // After the last frame, once the whole stream is in the buffer: checks its end. Returns what
-  // is wrong with the stream.
+  // Checks the end of the stream, after the last frame, once the whole stream is in the buffer.
+  // Returns the error of the stream, if any.
   virtual std::optional<std::string> finish() = 0;
 };
 
-// stream: may grow between calls. threads: as of DecoderOptions. An error in what comes before
-// the first frame is returned by the first call of next_frame().
+// Makes a reader. stream: may grow between calls. threads: see DecoderOptions. The first call
+// of next_frame() returns errors of everything before the first frame.
 std::unique_ptr<FrameReader> read_frames(std::shared_ptr<StreamBuffer> stream,
                                          std::uint32_t threads);
 

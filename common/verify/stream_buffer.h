@@ -1,4 +1,4 @@
-// The bytes of a stream that is being written, kept so that they can be read back.
+// Buffer of a stream that is being written, so that it can be read back.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 
 namespace rlpc {
 
-// Grows at its end; used by one thread at a time, except that several may read.
+// Grows at its end. Used by one thread at a time, except that several may read.
 class StreamBuffer {
  public:
-  // kAll: bytes stay until the buffer ends. kNeeded: those that a reader forgets are released.
+  // kAll: bytes stay until the buffer ends. kNeeded: bytes that a reader forgets are released.
   enum class Keep : std::uint8_t { kAll, kNeeded };
   explicit StreamBuffer(Keep keep) : keep_(keep) {}
 
@@ -22,9 +22,9 @@ class StreamBuffer {
     chunks_.push_back({size_, {bytes.begin(), bytes.end()}});
     size_ += bytes.size();
   }
-  // All bytes that have been added, also those that have been released.
+  // Returns the number of bytes that have been added, including released ones.
   std::uint64_t size() const { return size_; }
-  // Fills `out` from `offset`. False: some of the bytes are not there, or have been released.
+  // Fills `out` from `offset`. Returns false if some bytes do not exist or have been released.
   bool read(std::uint64_t offset, std::span<std::uint8_t> out) const {
     if (offset > size_ || out.size() > size_ - offset) return false;
     const auto after = std::upper_bound(
@@ -41,15 +41,15 @@ class StreamBuffer {
     }
     return true;
   }
-  // Bytes before an offset will not be read again.
+  // Releases bytes before an offset, if the buffer keeps only needed bytes.
   void forget(std::uint64_t before) {
     while (keep_ == Keep::kNeeded && !chunks_.empty() &&
            chunks_.front().offset + chunks_.front().bytes.size() <= before) {
       chunks_.pop_front();
     }
   }
-  // Calls pass(bytes) for all pieces in order, until one returns false. Returns whether none
-  // did.
+  // Calls pass(bytes) for all pieces in order, until a call returns false. Returns whether all
+  // calls returned true.
   template <class Pass>
   bool for_each_piece(const Pass& pass) const {
     return std::all_of(chunks_.begin(), chunks_.end(), [&](const Chunk& chunk) {

@@ -29,14 +29,14 @@ std::size_t stride_of(const rlpc_channel& channel) {
   return channel.stride == 0 ? 3 * bytes_of(channel.format) : channel.stride;
 }
 
-// value(v, c): of a vertex and an axis.
+// Writes values. value(v, c): of vertex v and axis c.
 template <class Value>
 void write(const rlpc_channel& channel, std::size_t count, const Value& value) {
   auto* const first = static_cast<unsigned char*>(channel.data);
   const std::size_t stride = stride_of(channel);
   for (std::size_t v = 0; v < count; ++v) {
     const std::array values{value(v, 0), value(v, 1), value(v, 2)};
-    // No place is computed behind the last vertex: it may lie outside the buffer.
+    // Computes no place past the last vertex: it may lie outside the buffer.
     std::memcpy(first + v * stride, values.data(), sizeof values);
   }
 }
@@ -155,7 +155,7 @@ void write_mixed_positions(const Mix<std::int32_t>& positions, const Grid& grid,
 
 namespace {
 
-// normal(v): that of a vertex, of length 1.
+// Writes normals. normal(v): unit vector of vertex v.
 template <class Normal>
 void write_unit_normals(const rlpc_channel& channel, std::size_t count, const Normal& normal) {
   const auto write_as = [&](const auto& convert) {
@@ -188,7 +188,7 @@ void write_normals(const Triples<double>& sums, const rlpc_channel& channel) {
 }
 
 void write_mixed_normals(const Mix<double>& normals, const rlpc_channel& channel) {
-  constexpr double kShortest = 1e-6;  // of a sum of unit vectors that still has a direction
+  constexpr double kShortest = 1e-6;  // shortest sum of unit vectors with a direction
   write_unit_normals(channel, normals.first.num_vertices(), [&](std::size_t v) {
     const Vec3d sum{normals.at(v, 0), normals.at(v, 1), normals.at(v, 2)};
     if (dot(sum, sum) > kShortest * kShortest) return unit_normal(sum.data());
@@ -206,11 +206,11 @@ void sum_normals(std::span<const std::int32_t> positions, std::span<const Triang
       const std::int32_t* const to = &positions[3 * std::size_t{t[(k + 1) % 3]}];
       for (std::size_t c = 0; c < 3; ++c) edges[k][c] = static_cast<double>(to[c]) - from[c];
     }
-    const Vec3d normal = cross(edges[0], edges[1]);  // twice the area long
+    const Vec3d normal = cross(edges[0], edges[1]);  // as long as twice the area
     const double length = std::sqrt(dot(normal, normal));
     if (!(length > 0)) continue;
     for (std::size_t k = 0; k < 3; ++k) {
-      // The angle between this edge and the one before it, turned around.
+      // The angle between this edge and the reversed previous edge.
       const double weight =
           by_angle ? std::atan2(length, -dot(edges[k], edges[(k + 2) % 3])) / length : 1;
       double* const sum = &sums[3 * std::size_t{t[k]}];

@@ -12,10 +12,10 @@
 
 namespace rlpc {
 
-// The nearest binary16, ties to even; infinity beyond its range.
+// Returns the nearest binary16, ties to even; infinity beyond its range.
 std::uint16_t half_of(float value);
 
-// Bytes from the first value to the last of `count` vertices.
+// Returns the bytes from the first value to the last of `count` vertices.
 std::size_t bytes_needed(const rlpc_channel& channel, std::size_t count);
 
 // coordinate = value * scale + offset
@@ -23,11 +23,11 @@ struct Int16Scale {
   std::array<double, 3> scale{};
   std::array<double, 3> offset{};
 };
-// Holds every position of position_bits.
+// Returns the scale with which 16 bits cover every position of position_bits bits.
 Int16Scale int16_scale(const Grid& grid, int position_bits);
 
-// Triples of numbers, [i][3], and where each output vertex has its own: empty if vertex i has
-// triple i.
+// Triples of numbers [i][3], and the index of the triple of each output vertex; of_vertex is
+// empty if vertex i has triple i.
 template <class Number>
 struct Triples {
   std::span<const Number> numbers;
@@ -41,7 +41,7 @@ struct Triples {
   }
 };
 
-// Values of two frames with the same vertices; the second has this weight, from 0 to 1.
+// Values of two frames with the same vertices, and the weight of the second, 0 to 1.
 template <class Number>
 struct Mix {
   Triples<Number> first;
@@ -52,23 +52,24 @@ struct Mix {
     return (1 - weight) * first.at(vertex)[c] + weight * second.at(vertex)[c];
   }
 };
-// A position between those of the grid, rounded once.
+// Returns the coordinate of a position between grid points, rounded once.
 float float_position(const Grid& grid, std::size_t axis, double position);
 
-// All write bytes_needed() at most. The format has been checked.
+// The functions below write bytes_needed() at most. The format has been checked.
 //
-// positions: grid units
+// Writes positions, in grid units.
 void write_positions(const Triples<std::int32_t>& positions, const Grid& grid,
                      const Int16Scale& scale, const rlpc_channel& channel);
-// The format is not RLPC_INT32.
+// Writes interpolated positions; the format is not RLPC_INT32.
 void write_mixed_positions(const Mix<std::int32_t>& positions, const Grid& grid,
                            const Int16Scale& scale, const rlpc_channel& channel);
-// sums: of any length
+// Writes normals as unit vectors. sums: vectors of any length.
 void write_normals(const Triples<double>& sums, const rlpc_channel& channel);
-// normals: of length 1; where they cancel out, the one of the larger weight is written
+// Writes interpolated normals. normals: unit vectors; where they cancel out, the one with the
+// larger weight is written.
 void write_mixed_normals(const Mix<double>& normals, const rlpc_channel& channel);
 
-// The sum of the normals of the triangles around each vertex, by area or by angle.
+// Sums the normals of the triangles around each vertex, weighted by area or by angle.
 void sum_normals(std::span<const std::int32_t> positions, std::span<const Triangle> triangles,
                  bool by_angle, rlpc::Vector<double>& sums);
 

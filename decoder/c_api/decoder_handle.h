@@ -1,4 +1,4 @@
-// The handle of the decoder in C, and what its functions share.
+// Handle of the decoder in C, and helpers of its functions.
 #pragma once
 
 #include <array>
@@ -18,18 +18,18 @@ namespace rlpc {
 
 // A frame that rlpc_decoder_blend has decoded.
 struct BlendFrame {
-  std::optional<std::uint32_t> frame;  // none: it has to be decoded
+  std::optional<std::uint32_t> frame;  // none: must be decoded
   Vector<std::int32_t> positions;
-  Vector<double> normals;  // of length 1, as many as normals_of says; empty: not computed
-  std::uint32_t normals_of = 0;
+  Vector<double> normals;        // [num_normals][3], unit vectors; empty: not computed
+  std::uint32_t normals_of = 0;  // rlpc_normal_weight, or 2: the set `normal`
 };
 
-// The frames of the last blend, of which the next one may use one or both.
+// Frames of the last blend, which the next one may reuse.
 struct Blend {
   std::array<BlendFrame, 2> frames;
-  double weight = 0;                   // of the second
-  std::array<std::size_t, 2> shown{};  // of frames: the first and the second
-  bool is_shown = false;               // rather than rlpc_decoder::positions
+  double weight = 0;                   // weight of the second frame
+  std::array<std::size_t, 2> shown{};  // indices in frames: the first and the second
+  bool is_shown = false;               // false: rlpc_decoder::positions is the last frame
 };
 
 }  // namespace rlpc
@@ -37,36 +37,37 @@ struct Blend {
 // NOLINTNEXTLINE(readability-identifier-naming): its name in C.
 struct rlpc_decoder {
   std::optional<rlpc::Decoder> decoder;
-  rlpc::Vector<std::int32_t> positions;  // of the last frame that was converted
-  bool has_frame = false;                // whether there is one, or a blend
-  std::uint32_t next_of_frame = 0;       // position() after it
+  rlpc::Vector<std::int32_t> positions;  // [num_vertices][3], last frame that was converted
+  bool has_frame = false;                // whether a frame or a blend has been decoded
+  std::uint32_t next_of_frame = 0;       // position() after that frame
   rlpc::Blend blend;
-  // Bones of the frame that was asked for last, and how many skeletons there were up to it.
+  // Pose of the last call of rlpc_decoder_pose, and the number of skeletons so far.
   std::optional<rlpc::SkeletonPose> pose;
   std::uint32_t num_skeletons = 0;
-  std::uint32_t next_of_pose = 0;
-  rlpc::Vector<double> normal_sums;  // [num_vertices][3], of the last frame with normals
-  // Kept once they have been asked for. The drawn mesh refers to the attributes.
+  std::uint32_t next_of_pose = 0;    // next_of_frame at that call
+  rlpc::Vector<double> normal_sums;  // [num_vertices][3], last frame with normals
+  // Cached from the first request on. The drawn mesh refers to the attributes.
   std::optional<rlpc::Vector<rlpc::AttributeSet>> attributes;
   std::optional<rlpc::DrawnMesh> drawn;
   std::optional<rlpc::String> asset;
   rlpc::HandleError error;
   bool is_placed = false;
-  bool is_allocated = false;  // by the owner
-  rlpc::Owner owner;          // of all its memory; not set: operator new
+  bool is_allocated = false;  // whether the owner allocated the handle
+  rlpc::Owner owner;          // owner of all memory; not set: operator new
 };
 
 namespace rlpc {
 
 rlpc_status status_of(Errc code);
-// Both set the error of the handle.
+// Sets the error of the handle, and returns its status.
 rlpc_status fail(rlpc_decoder& handle, const Error& error);
+// Returns RLPC_OK if a frame exists; otherwise sets the error of the handle.
 rlpc_status check_frame(rlpc_decoder& handle, std::uint32_t frame);
-// Whether a buffer has exactly the size needed.
+// Returns whether a buffer has exactly the size needed; otherwise sets the error of the handle.
 bool check_buffer(rlpc_decoder& handle, const void* buffer, std::size_t num_values,
                   std::size_t wanted);
 
-// The box of the blend that is shown, as rlpc_decoder_bounds gives it.
+// Computes the box of the last blend for rlpc_decoder_bounds.
 void give_bounds(const rlpc_decoder& handle, float* least, float* most);
 
 struct IndexBuffer {

@@ -13,7 +13,7 @@ rlpc_status bad_output(rlpc_decoder& handle, const std::string& what) {
 
 namespace {
 
-// name: of the channel; formats: a list of those it has.
+// Checks a channel. name: for messages; formats: the formats that it supports.
 rlpc_status check_channel(rlpc_decoder& handle, const char* name, const rlpc_channel& channel,
                           std::span<const std::uint32_t> formats, std::size_t num_vertices) {
   if (channel.data == nullptr) return RLPC_OK;

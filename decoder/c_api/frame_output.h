@@ -1,4 +1,4 @@
-// Checks of rlpc_frame_output, for all functions that give frames.
+// Checks of rlpc_frame_output for all functions that write frames.
 #pragma once
 
 #include <string>
@@ -8,11 +8,12 @@
 
 namespace rlpc {
 
-// Sets the error of the handle.
+// Sets the error of the handle, and returns RLPC_BAD_ARGUMENT.
 rlpc_status bad_output(rlpc_decoder& handle, const std::string& what);
-// Whether the output has formats and buffers for the vertices of a frame.
+// Returns RLPC_OK if the output has formats and buffers for the vertices of a frame; otherwise
+// sets the error of the handle.
 rlpc_status check_output(rlpc_decoder& handle, const rlpc_frame_output& output);
-// The scale of RLPC_INT16 that the output asks for, or the one that holds every position.
+// Returns the scale of RLPC_INT16 positions in the output, or the one that covers the grid.
 Int16Scale scale_of(const rlpc_frame_output& output, const SequenceHeader& header);
 
 }  // namespace rlpc

@@ -18,7 +18,7 @@ rlpc_status bad(rlpc_decoder& handle, const std::string& what) {
   return handle.error.set(RLPC_BAD_ARGUMENT, what);
 }
 
-// Null, with the error of the handle: there is none.
+// Returns a set; null, and the error of the handle, if it does not exist.
 const AttributeSet* set_at(rlpc_decoder& handle, std::uint32_t set) {
   const auto& sets = handle.attributes;
   if (sets && set < sets->size()) return &(*sets)[set];
@@ -59,7 +59,7 @@ rlpc_attribute describe(const AttributeSet& set) {
   return described;
 }
 
-// Of the sets that drawn vertices have; none: not one of them.
+// Returns the index of a set in the sets of drawn vertices; none if it is not one of them.
 std::optional<std::size_t> place_of(const DrawnMesh& drawn, const AttributeSet* set) {
   const auto sets = drawn.sets();
   const auto found = std::find(sets.begin(), sets.end(), set);

@@ -1,4 +1,4 @@
-// The linear mix of two frames (decoder/c_api/rlpc_pose.h).
+// Blends of two frames (decoder/c_api/rlpc_pose.h).
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -31,7 +31,7 @@ rlpc_status check_blend(rlpc_decoder& handle, const rlpc_blend& blend,
   return check_output(handle, output);
 }
 
-// Decodes a frame, unless it is there.
+// Decodes a frame, unless `place` has it.
 rlpc_status take_frame(rlpc_decoder& handle, BlendFrame& place, std::uint32_t frame) {
   if (place.frame == frame) return RLPC_OK;
   place.frame.reset();
@@ -43,7 +43,7 @@ rlpc_status take_frame(rlpc_decoder& handle, BlendFrame& place, std::uint32_t fr
   return RLPC_OK;
 }
 
-// Both frames of a blend, which may be the same one. Those of the last blend are kept.
+// Decodes the frames of a blend, which may be equal. Reuses those of the last blend.
 rlpc_status take_frames(rlpc_decoder& handle, const rlpc_blend& blend) {
   auto& [first, second] = handle.blend.frames;
   const bool needs_first = blend.weight < 1;
@@ -98,7 +98,7 @@ void write_blend(rlpc_decoder& handle, const rlpc_frame_output& output, BlendFra
       output.normals);
 }
 
-// The frames that count: both are the same one where the other has no weight.
+// Returns the indices of the frames with a weight; equal if there is only one.
 std::pair<std::size_t, std::size_t> shown_frames(const rlpc_blend& blend) {
   if (blend.weight == 0 || blend.first_frame == blend.second_frame) return {0, 0};
   return {blend.weight < 1 ? 0 : 1, 1};

@@ -84,7 +84,7 @@ DecoderOptions decoder_options(const rlpc_decode_options& given) {
   return options;
 }
 
-// make_source(limits) returns a Result<std::unique_ptr<ByteSource>>.
+// Opens a stream. make_source(limits) returns a Result<std::unique_ptr<ByteSource>>.
 template <class MakeSource>
 rlpc_status open(const rlpc_decode_options* given, rlpc_decoder** decoder,
                  const MakeSource& make_source) {
@@ -144,8 +144,8 @@ rlpc_status next(rlpc_decoder& handle, std::span<std::int32_t> positions) {
   return *more ? RLPC_OK : RLPC_END;
 }
 
-// The frames of a clip that the stream has, as far as that is known; null: all. None with an
-// error of the handle.
+// Returns the known frames of a clip in the stream; all frames for a null clip. None, and the
+// error of the handle, if it has none.
 std::optional<Clip> frames_of(rlpc_decoder& handle, const rlpc_clip* clip) {
   const std::uint32_t num_frames =
       handle.decoder->num_frames().value_or(handle.decoder->header().num_frames);
@@ -377,7 +377,7 @@ rlpc_status rlpc_decoder_next_floats(rlpc_decoder* decoder, float* xyz, size_t n
     decoder->positions.resize(wanted);
     decoder->blend.is_shown = false;
     const rlpc_status status = rlpc::next(*decoder, decoder->positions);
-    // At the end, the last frame stays.
+    // The last frame stays at the end.
     if (status != RLPC_END) decoder->has_frame = status == RLPC_OK;
     if (status != RLPC_OK) return status;
     decoder->next_of_frame = decoder->decoder->position();

@@ -1,4 +1,4 @@
-// Frames in any order and form, and what concerns them (decoder/c_api/rlpc_decode.h).
+// Frames in any order and form, GOFs, indices, bounds and memory (decoder/c_api/rlpc_decode.h).
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -12,7 +12,7 @@
 namespace rlpc {
 namespace {
 
-// decode(positions): a Result<bool>, false after the last frame.
+// Writes a frame. decode(positions) returns a Result<bool>, false after the last frame.
 template <class Decode>
 rlpc_status give_frame(rlpc_decoder& handle, const rlpc_frame_output* wanted,
                        const Decode& decode) {

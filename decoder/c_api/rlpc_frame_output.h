@@ -1,12 +1,13 @@
-// RLPC decoder in C: the form in which rlpc_decoder_frame and rlpc_decoder_next give a frame.
-// C99 and C++.
+// RLPC decoder in C: the form in which rlpc_decoder_frame, _next and _blend write a frame. C99
+// and C++.
 //
 //   rlpc_frame_output output;
 //   rlpc_frame_output_init(&output, sizeof output);
 //   output.positions = (rlpc_channel){vertices, vertices_bytes, sizeof(vertex), RLPC_FLOAT};
 //   const size_t normal_bytes = vertices_bytes - offsetof(vertex, normal);
-//   output.normals = (rlpc_channel){&vertices->normal, normal_bytes, sizeof(vertex),
-//   RLPC_INT8}; rlpc_decoder_frame(decoder, 17, &output);
+//   output.normals =
+//       (rlpc_channel){&vertices->normal, normal_bytes, sizeof(vertex), RLPC_INT8};
+//   rlpc_decoder_frame(decoder, 17, &output);
 #pragma once
 
 #include <stddef.h>
@@ -22,49 +23,50 @@ extern "C" {
 typedef enum rlpc_format {
   RLPC_INT32 = 1,  // positions: grid units, exact
   RLPC_FLOAT = 2,  // 32 bits, in the units of the encoder's input
-  RLPC_HALF = 3,   // IEEE 754 binary16, rounded to nearest, to infinity from 65520 on
+  RLPC_HALF = 3,   // IEEE 754 binary16, rounded to nearest; infinity from 65520 on
   RLPC_INT16 = 4,  // positions: see int16_scale; normals: 32767 times the vector
   RLPC_INT8 = 5,   // normals: 127 times the vector
 } rlpc_format;
 
 typedef enum rlpc_normal_weight {
-  RLPC_BY_AREA = 0,   // of the triangles around a vertex
-  RLPC_BY_ANGLE = 1,  // that they have there: does not depend on how faces are split
+  RLPC_BY_AREA = 0,   // area of each triangle around a vertex
+  RLPC_BY_ANGLE = 1,  // angle of each triangle at the vertex; independent of triangulation
 } rlpc_normal_weight;
 
-// Three values per vertex, one vertex every stride bytes; bytes in between are left alone.
+// Three values per vertex, one vertex every stride bytes; bytes in between are not written.
 typedef struct rlpc_channel {
-  void* data;        // null: not wanted. Values need no alignment
-  size_t num_bytes;  // of the buffer from data on, at least up to the last value
-  size_t stride;     // bytes; 0: without gaps
+  void* data;        // null: no output; values need no alignment
+  size_t num_bytes;  // buffer size from data on, at least up to the last value
+  size_t stride;     // bytes from vertex to vertex; 0: no gaps
   uint32_t format;   // rlpc_format
 } rlpc_channel;
 
 typedef struct rlpc_frame_output {
-  size_t struct_size;      // rlpc_frame_output_init sets it
+  size_t struct_size;      // set by rlpc_frame_output_init
   rlpc_channel positions;  // RLPC_INT32, _FLOAT, _HALF or _INT16
-  // Unit vectors from the geometry of the frame, RLPC_FLOAT, _HALF, _INT16 or _INT8; 0, 0, 1
-  // where the triangles around a vertex have no area. They take some sums over all triangles.
+  // Unit vectors computed from the geometry of the frame, RLPC_FLOAT, _HALF, _INT16 or _INT8;
+  // 0, 0, 1 where the triangles around a vertex have no area. Time: one pass over all
+  // triangles.
   rlpc_channel normals;
   uint32_t normal_weight;  // rlpc_normal_weight
-  // RLPC_INT16 positions: coordinate = value * scale + offset for each axis, rounded to the
-  // nearest value, and to the outermost one beyond. A scale of 0, the default: scale and offset
-  // that cover range_min to range_max of rlpc_stream_info; rlpc_decoder_int16_scale tells them.
+  // Scale and offset of RLPC_INT16 positions: coordinate = value * scale + offset for each
+  // axis, rounded to the nearest value and clipped to 16 bits. A scale of 0, the default:
+  // covers range_min to range_max of rlpc_stream_info (rlpc_decoder_int16_scale).
   double int16_scale[3];
   double int16_offset[3];
-  // 1: a value for each drawn vertex (rlpc_attributes.h); normals are then those of the set
-  // `normal`, with its smoothing and weights, whatever normal_weight is, if the stream has one:
-  // stored ones turn with the edges around their vertex, which takes several times as long. 0:
-  // for each vertex of the stream.
+  // 1: writes a value per drawn vertex (rlpc_attributes.h). If the stream has a set `normal`,
+  // normals then come from it, with its smoothing and weights instead of normal_weight; stored
+  // normals turn with the edges around their vertex, which takes several times as long. 0:
+  // writes a value per vertex of the stream.
   uint32_t split;
 } rlpc_frame_output;
 // NOLINTEND(readability-identifier-naming)
 
-// Sets all members to their defaults: nothing is wanted. struct_size: sizeof *output.
+// Sets all members to their defaults: no output. struct_size: sizeof *output.
 RLPC_API void rlpc_frame_output_init(rlpc_frame_output* output, size_t struct_size);
 
 struct rlpc_decoder;
-// The scales and offsets with which 16 bits hold every position that the grid has.
+// Returns the scales and offsets with which 16 bits cover every position of the grid.
 RLPC_API rlpc_status rlpc_decoder_int16_scale(struct rlpc_decoder* decoder, double scale[3],
                                               double offset[3]);
 

@@ -1,4 +1,4 @@
-// The bones of a frame (decoder/c_api/rlpc_pose.h).
+// Bones of a frame (decoder/c_api/rlpc_pose.h).
 #include "decoder/c_api/rlpc_pose.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using Vec3d = std::array<double, 3>;
 
-// x -> turn * x + move; turn has its columns one after the other.
+// Map x -> turn * x + move; turn has columns.
 struct AffineMap {
   std::array<Vec3d, 3> turn{};
   Vec3d move{};
@@ -36,7 +36,7 @@ Vec3d cross(const Vec3d& a, const Vec3d& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// first(second(x))
+// Returns the map first(second(x)).
 AffineMap product(const AffineMap& first, const AffineMap& second) {
   AffineMap map;
   map.move = first(second.move);
@@ -68,7 +68,7 @@ Vec3d solve(const std::array<Vec3d, 3>& turn, const Vec3d& y, double damping) {
   return x;
 }
 
-// From the coordinates of a bone to those of the encoder's input.
+// Returns the map from the coordinates of a bone to those of the encoder's input.
 AffineMap map_of(const BonePlace& place, const Grid& grid) {
   constexpr double kAxisUnit = 1.0 / (std::int64_t{1} << 30);
   constexpr double kOriginFractions = 16;
@@ -83,7 +83,7 @@ AffineMap map_of(const BonePlace& place, const Grid& grid) {
   return map;
 }
 
-// From the rest shape to the frame. Bones are rigid.
+// Returns the map from the rest shape to the frame. Bones are rigid.
 AffineMap skin_map(const BonePlace& bind, const BonePlace& place, const Grid& grid) {
   const AffineMap from = map_of(bind, grid);
   AffineMap back;
@@ -102,7 +102,7 @@ void write_matrix(const AffineMap& map, float* out) {
   }
 }
 
-// The strongest influences, at most `slots` of them; the sum of their weights.
+// Lists the strongest influences, at most `slots`. Returns the sum of their weights.
 double strongest(const Vector<SkeletonInfluence>& all, std::size_t slots,
                  Vector<SkeletonInfluence>& list) {
   list = all;
@@ -118,7 +118,7 @@ rlpc_status bad_pose(rlpc_decoder& handle, const std::string& what) {
   return handle.error.set(RLPC_BAD_ARGUMENT, what);
 }
 
-// Whether there are bones, and slots for influences.
+// Returns RLPC_OK if the pose has bones, and slots are in range.
 rlpc_status check_pose(rlpc_decoder& handle, std::uint32_t slots = 1) {
   constexpr std::uint32_t kMostSlots = 65536;
   if (!handle.pose) return bad_pose(handle, "there are no bones: see rlpc_decoder_pose");

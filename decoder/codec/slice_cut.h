@@ -1,4 +1,4 @@
-// 8.14.1 Slices that are absent: those to drop from each skinned GOF.
+// 8.14.1 Slices that are absent: selects the slices to drop from each GOF.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace rlpc {
 
-// Component groups and layer groups are kept or dropped as a whole: each GOF keeps the leading
-// groups with at most max_components trajectories in total, and the coarsest with at most
-// max_layers vertex layers. The first layer group is always kept, as are influences and rest
-// positions. Of the temporal layers, the first max_temporal_layers are kept.
+// Keeps or drops component groups and layer groups as a whole: each GOF keeps the leading
+// component groups with at most max_components trajectories in total, the coarsest layer groups
+// with at most max_layers vertex layers in total, and the first max_temporal_layers temporal
+// layers. The first layer group, influences and rest positions are always kept.
 struct SliceCut {
   static constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t max_components = kAll;
@@ -28,7 +28,8 @@ struct SliceCut {
   }
 };
 
-// layer_group_size: layers of each group, at least one group.
+// Returns the number of leading layer groups within a cut. layer_group_size: layers of each
+// group, at least one group.
 inline std::uint32_t layer_groups_that_stay(std::span<const std::uint32_t> layer_group_size,
                                             const SliceCut& cut) {
   std::uint64_t layers = layer_group_size[0];

@@ -1,5 +1,5 @@
-// Fuzzes the parser of attribute units and their reconstruction. Input: columns and rows of a
-// grid, and how often it is repeated, 3 bytes; the payload.
+// Fuzzes the parser of attribute units and their reconstruction. Input: columns, rows and
+// copies of a grid, 3 bytes; the payload.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace {
 using rlpc::fuzz_check;
 using rlpc::Triangle;
 
-// The second of two copies of the grid shares its vertices, so that edges have more than two
-// triangles; the third has every triangle turned into one with a vertex twice.
+// Makes copies of a grid. The second copy shares the vertices of the first, so that edges have
+// more than two triangles; the third has every triangle with a repeated vertex.
 std::vector<Triangle> mesh_of(std::uint32_t columns, std::uint32_t rows, std::uint32_t copies) {
   std::vector<Triangle> triangles;
   for (std::uint32_t copy = 0; copy < copies; ++copy) {

@@ -1,4 +1,4 @@
-// Fuzzes the whole decoder. stream_mutator_fuzz.cpp keeps the CRCs of the units right.
+// Fuzzes the whole decoder. stream_mutator_fuzz.cpp keeps the CRCs of the units valid.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,8 +21,8 @@ rlpc::Result<rlpc::Decoder> open(std::span<const std::uint8_t> stream, bool veri
   return rlpc::Decoder::open(rlpc::memory_source({stream.begin(), stream.end()}), options);
 }
 
-// For a stream that was decoded completely: seeking back gives the same first frame, and
-// parsing succeeds.
+// Checks, for a stream that was decoded completely, that seeking back decodes the same first
+// frame, and that parsing succeeds.
 void check_again(rlpc::Decoder& decoder, const Positions& first) {
   Positions again(first.size());
   rlpc::fuzz_check(static_cast<bool>(decoder.seek(0)));
@@ -49,7 +49,7 @@ std::string_view decode(std::span<const std::uint8_t> stream, bool verify_hashes
   return "";
 }
 
-// Seeks with the GOF index, if there is one; its contents may be wrong.
+// Seeks with the GOF index, if any; its contents may be wrong.
 void decode_last(std::span<const std::uint8_t> stream) {
   auto decoder = open(stream, true);
   if (!decoder || !decoder->seek(decoder->header().num_frames - 1)) return;
@@ -57,7 +57,7 @@ void decode_last(std::span<const std::uint8_t> stream) {
   (void)decoder->next_frame(positions);
 }
 
-// Drops some of the slices, if there are any.
+// Drops some of the slices, if any.
 void decode_cut(std::span<const std::uint8_t> stream) {
   rlpc::DecoderOptions options;
   options.limits = kLimits;
@@ -72,8 +72,8 @@ void decode_cut(std::span<const std::uint8_t> stream) {
   }
 }
 
-// For a stream that was decoded as far as the limits allow: a coarse mesh has the positions of
-// the whole mesh.
+// Checks, for a stream that was decoded as far as the limits allow, that a coarse mesh has the
+// positions of the whole mesh.
 void decode_coarse(std::span<const std::uint8_t> stream) {
   rlpc::DecoderOptions options;
   options.limits = kLimits;

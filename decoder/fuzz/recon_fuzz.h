@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// The frames lie in the sequence, and their positions in the range of the header.
+// Checks that the frames lie in the sequence, and their positions in the range of the header.
 template <class Recon>
 void fuzz_check_frames(const Recon& recon, const SequenceHeader& header,
                        std::uint32_t first_frame) {

@@ -1,8 +1,8 @@
 // Fuzzes the parser and the reconstruction of skinned GOFs, shared rigs and their slices,
 // without CRCs.
 // Input: first frame, 4 bytes; then pieces, each preceded by its size, 2 bytes: the payloads of
-// sequence header, connectivity, GOF and slices. If the highest bit of the first frame is set,
-// the High profile: GOFs, shared rigs and slices in any order, each after a byte with its
+// sequence header, connectivity, GOF and slices. The highest bit of the first frame selects the
+// High profile, with GOFs, shared rigs and slices in any order, each after a byte with its
 // type.
 
 #include <algorithm>
@@ -73,7 +73,7 @@ class Units {
   Units(const rlpc::SequenceHeader& header, const rlpc::OrderedMeshes& meshes)
       : header_(header), meshes_(meshes), parser_(header, meshes, {kMaxMemoryBytes, 0}) {}
 
-  // False after an error.
+  // Adds a unit. Returns false after an error.
   bool add(const Unit& unit, std::uint32_t first_frame) {
     rlpc::BitReader bits(unit.payload);
     if (unit.type == rlpc::UnitType::kSlice) {
@@ -93,7 +93,7 @@ class Units {
     return gof.kind == rlpc::GofKind::kSkinned &&
            static_cast<bool>(parser_.bones(bits, gof, rigs_));
   }
-  // The GOF or shared rig so far, without the slices that could follow.
+  // Finishes the GOF or shared rig, without the slices that could follow.
   void finish() {
     if (open_ == rlpc::UnitType::kRig) finish_rig();
     if (open_ == rlpc::UnitType::kGof) finish_gof();
@@ -129,12 +129,12 @@ class Units {
   const rlpc::SequenceHeader& header_;
   const rlpc::OrderedMeshes& meshes_;
   rlpc::SkinnedGofParser parser_;
-  rlpc::UnitType open_ = rlpc::UnitType::kSlice;  // neither GOF nor shared rig
+  rlpc::UnitType open_ = rlpc::UnitType::kSlice;  // kSlice: neither GOF nor shared rig
   rlpc::RigSlots rigs_;
   std::array<std::shared_ptr<const rlpc::RigRecon>, rlpc::kMaxRigs> recons_;
 };
 
-// In the Main profile, the first of the pieces is a GOF, and the others are its slices.
+// Decodes pieces. In the Main profile, the first piece is a GOF, and the others are its slices.
 void decode(const rlpc::SequenceHeader& header, const rlpc::OrderedMeshes& meshes,
             std::uint32_t first_frame, std::span<const Piece> pieces) {
   Units units(header, meshes);

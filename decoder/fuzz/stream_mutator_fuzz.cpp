@@ -1,6 +1,6 @@
-// Mutations of whole streams, for libFuzzer. They act on units and then repair sizes and CRCs,
-// as otherwise almost all mutated streams would fail R-UNT-03. Linked into the targets whose
-// input is a stream.
+// Mutations of whole streams, for libFuzzer. They mutate units and then repair sizes and CRCs;
+// otherwise almost all mutated streams would fail R-UNT-03. Linked into the targets whose input
+// is a stream.
 
 #include <algorithm>
 #include <cstddef>
@@ -130,8 +130,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   return store(stream, data, max_size).value_or(std::min(size, max_size));
 }
 
-// The first stream with a unit of the second, which replaces a unit of the same type or is
-// inserted behind it.
+// Inserts a unit of the second stream into the first, in place of or after a unit of the same
+// type.
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data1, std::size_t size1,
                                                  const std::uint8_t* data2, std::size_t size2,
                                                  std::uint8_t* out, std::size_t max_size,

@@ -1,7 +1,7 @@
 // Decodes streams with three decoders at a time, each with three threads that prefetch: one
-// forwards, one to random frames, one that announces random frames and keeps GOFs. All must
-// return the frames and the errors of a decoder with a single thread. What the preset
-// `tsan` runs on all conformance streams; under another preset it compares results only.
+// forwards, one to random frames, one that announces random frames and caches GOFs. All must
+// return the frames and the errors of a decoder with a single thread. The preset `tsan` runs it
+// on all conformance streams; other presets only compare results.
 //
 //   threads_replay FILE...      exit code 1 where a decoder differs; deterministic requests
 
@@ -27,7 +27,7 @@ using Frame = std::vector<std::int32_t>;
 constexpr std::uint32_t kThreads = 3;
 constexpr int kRandomFrames = 40;
 constexpr std::uint64_t kCachedBytes = 1 << 22;
-// Streams at the limits of a level announce more than a test can hold.
+// Memory limit: streams at the limits of a level declare more than a test can hold.
 constexpr std::uint64_t kMaxMemoryBytes = 1ULL << 30;
 
 struct Decoded {
@@ -81,8 +81,8 @@ Decoded decode(const Bytes& stream, std::uint32_t threads) {
   }
 }
 
-// The outcome of requests for random frames below num_frames: the frame, or none for an error.
-// seed: of the requests. Announces other frames if GOFs are kept.
+// Returns the outcomes of requests for random frames below num_frames: the frame, or none for
+// an error. seed: selects the requests. Announces other frames if GOFs are cached.
 std::vector<std::optional<Frame>> random_frames(const Bytes& stream, std::size_t num_frames,
                                                 std::uint32_t threads,
                                                 std::uint64_t cached_bytes, unsigned seed) {
@@ -102,9 +102,9 @@ std::vector<std::optional<Frame>> random_frames(const Bytes& stream, std::size_t
   return outcomes;
 }
 
-// Whether outcomes are those of a decoder with a single thread. What is announced is decoded
-// earlier or later with several, and rigs that a stream lacks fail then: where any request of
-// the single thread fails, only frames that both return are compared.
+// Returns whether outcomes equal those of a decoder with a single thread. Several threads
+// decode announced frames earlier or later, and then fail where a stream lacks rigs: if any
+// request of the single thread fails, only frames that both return are compared.
 bool are_equal(const std::vector<std::optional<Frame>>& outcomes,
                const std::vector<std::optional<Frame>>& single) {
   const bool has_failed =
@@ -115,7 +115,7 @@ bool are_equal(const std::vector<std::optional<Frame>>& outcomes,
   return outcomes.size() == single.size();
 }
 
-// The name of the first decoder that differs from `whole`; none: all agree.
+// Returns the name of the first decoder that differs from `whole`; none if all agree.
 std::optional<std::string> differing_decoder(const Bytes& stream, const Decoded& whole) {
   bool forwards = false;
   bool random = false;

@@ -58,8 +58,8 @@ class AssetRepair {
     tell(place + "." + key);
   }
 
-  // Removes references to textures, whose members have names that end in "Texture", anywhere in
-  // a material. Nesting is limited where the text is read.
+  // Removes references to missing textures, in members whose names end in "Texture", anywhere
+  // in a material. Nesting is limited where the text is read.
   void repair_material(GltfJson& value, const std::string& place) {
     if (!value.is_object()) return;
     std::vector<std::string> broken;

@@ -1,4 +1,4 @@
-// Parts of a stream's asset that no glTF file may have.
+// Repairs parts of the asset of a stream that are invalid in glTF files.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace rlpc {
 
-// Replaces elements of lists that are no objects by empty objects, so that others keep their
-// numbers, and removes references to textures, images and samplers that are not there. Returns
-// the places, "materials[1]", of the first of them; empty: all is good. root: an object whose
-// used members are arrays. Cost: linear in the asset.
+// Replaces list elements that are not objects by empty objects, so that others keep their
+// numbers, and removes references to missing textures, images and samplers. Returns the first
+// places that it changed, such as "materials[1]"; empty if the asset is valid. root: an object
+// whose used members are arrays. Cost: linear in the asset.
 std::vector<std::string> repair_asset(GltfJson& root);
 
 }  // namespace rlpc

@@ -7,7 +7,7 @@
 
 namespace rlpc {
 
-// RFC 4648, section 4: with padding, in one line.
+// Encodes bytes by RFC 4648, section 4: with padding, in one line.
 std::string base64(std::span<const std::uint8_t> bytes);
 
 }  // namespace rlpc

@@ -52,13 +52,13 @@ bool is_mesh(SinkFormat format) {
   return format == SinkFormat::kObj || format == SinkFormat::kPly;
 }
 
-// A lower bound of the bytes to write.
+// Returns a lower bound of the bytes to write.
 std::uint64_t least_bytes(SinkFormat format, const SinkOptions& options) {
   const std::uint64_t vertices = options.num_vertices;
   const std::uint64_t triangles = options.triangles.size();
   const std::uint64_t frames = options.num_frames;
   switch (format) {
-    case SinkFormat::kGlb:  // if nothing moves
+    case SinkFormat::kGlb:  // without motion
       return 12 * vertices;
     case SinkFormat::kObj:  // "v 0 0 0", "f 1 2 3"
       return frames * 8 * (vertices + triangles);
@@ -102,8 +102,8 @@ OutputResult<std::unique_ptr<FrameSink>> open_standard_output(SinkOptions option
   return open_one_file("-", format, std::move(options));
 }
 
-// Whether a name stands for numbered files. One "#" may be part of the name of a single file,
-// or of a folder.
+// Returns whether a name stands for numbered files. One "#" may be part of the name of a single
+// file or folder.
 bool is_numbered(const std::string& name, std::uint32_t num_frames) {
   if (name.find('%') != std::string::npos) return true;
   const auto numbered = parse_pattern(name);
@@ -115,7 +115,7 @@ std::string name_in_folder(SinkFormat format) {
   return "frame_%04d" + std::string(extension_of(format));
 }
 
-// The pattern of the files that go to `path`, perhaps a folder; none: one file does.
+// Returns the pattern of the files of `path`, perhaps a folder; none if it is one file.
 std::optional<fs::path> pattern_of(const fs::path& path, SinkFormat format) {
   if (!is_mesh(format) || path == "-") return std::nullopt;
   const std::string name = path.filename().string();

@@ -22,7 +22,7 @@ void append_digits(std::string& text, Number value) {
   text.append(digits.data(), result.ptr);
 }
 
-// A set of vertices or corners with so many components, smoothing aside.
+// Returns a set of vertices or corners with least to most components; null if there is none.
 const AttributeSet* find_values(const SinkOptions& options, const char* name,
                                 std::uint32_t least, std::uint32_t most) {
   const AttributeSet* const set = find_set(options.attributes, name);
@@ -45,7 +45,7 @@ const AttributeSet* find_indices(const SinkOptions& options, const char* name) {
 
 float finite(float x) { return std::isfinite(x) ? x : 0.0F; }
 
-// IEC 61966-2-1
+// Converts by IEC 61966-2-1.
 float srgb_of_linear(float x) {
   if (!(x > 0.0F)) return 0.0F;
   if (x >= 1.0F) return 1.0F;

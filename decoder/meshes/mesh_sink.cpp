@@ -87,7 +87,7 @@ class MeshSink : public FrameSink {
 
   SinkFormat format_;
   SinkOptions options_;
-  std::vector<CompanionFile> materials_;  // the .mtl file first; empty: none
+  std::vector<CompanionFile> materials_;  // .mtl file first; may be empty
   std::unique_ptr<MeshBytes> mesh_;
   fs::path folder_;
   NumberedName name_;
@@ -95,10 +95,10 @@ class MeshSink : public FrameSink {
   std::uint32_t written_ = 0;
 };
 
-// A single frame: one file, and perhaps its materials.
+// Writes a single frame: one file, and perhaps its materials.
 class SingleMeshSink : public FrameSink {
  public:
-  // library: the name of the .mtl file, the first of materials; empty: there are none.
+  // library: name of the .mtl file, the first of materials; empty: none.
   SingleMeshSink(SinkFormat format, SinkOptions options, OutputFile file,
                  const std::string& library, CompanionFiles materials)
       : format_(format),
@@ -131,7 +131,7 @@ class SingleMeshSink : public FrameSink {
   CompanionFiles materials_;
 };
 
-// What the names of the materials of a sequence begin with: "walk" for "walk_%04d.obj".
+// Returns the beginning of the names of materials of a sequence: "walk" for "walk_%04d.obj".
 std::string stem_of(const NumberedName& name) {
   const std::size_t last = name.prefix.find_last_not_of("_-. ");
   return last == std::string::npos ? "materials" : name.prefix.substr(0, last + 1);

@@ -11,7 +11,7 @@
 namespace rlpc {
 namespace {
 
-// Tells textures apart, whatever numbers they have.
+// Returns bits that identify a texture, also for numbers such as NaN.
 std::array<std::uint64_t, 7> bits_of(const ObjTexture& texture) {
   std::array<std::uint64_t, 7> bits{texture.set};
   for (std::size_t i = 0; i < 6; ++i) {
@@ -27,7 +27,7 @@ ObjBytes::ObjBytes(const SinkOptions& options, const std::string& materials)
   header_ = "# frame_rate " + frame_rate_text(options.frame_rate) + "\n";
   if (!materials.empty()) header_ += "mtllib " + materials + "\n";
   const AttributeSet* const colour = attributes_.colour;
-  // OBJ files have colours of vertices only.
+  // OBJ files have only colours of vertices.
   if (colour != nullptr && colour->header.domain == AttributeDomain::kVertex) {
     colours_ = attributes_.colour_numbers();
     colour_width_ = number_components(colour->header);

@@ -26,20 +26,21 @@ class ObjBytes : public MeshBytes {
   struct UvList {
     ObjTexture texture;
     const AttributeSet* set = nullptr;
-    // The number of its first `vt`, counted from 1, if it has all values of the set. One list
-    // of each set has; others hold those that corners use, as every material may have a list.
+    // Number of its first `vt`, counted from 1, if it has all values of the set. One list of
+    // each set has them; others have the values that corners use, as every material may have a
+    // list.
     std::optional<std::uint64_t> first;
-    std::unordered_map<std::uint32_t, std::uint64_t> numbers;  // of `vt`, by value
+    std::unordered_map<std::uint32_t, std::uint64_t> numbers;  // number of the `vt` by value
   };
-  // Of a triangle. Null: it has none.
+  // Returns the list of a triangle; null if it has none.
   UvList* uv_of(const ObjMaterials& materials, std::size_t triangle);
-  // The index of their list.
+  // Returns the index of the list of a texture.
   std::optional<std::size_t> add_uv(const ObjTexture& texture);
-  // The number of the `vt` of a value.
+  // Returns the number of the `vt` of a value.
   std::uint64_t number_of(UvList& list, std::uint32_t value);
   void append_uv(const UvList& list, std::uint32_t value);
-  // Each part at once, and within it each material: importers make an object of every `g` line
-  // and a draw call of every `usemtl` line.
+  // Returns the triangles sorted by part, then by material: importers make an object of every
+  // `g` line and a draw call of every `usemtl` line.
   std::vector<std::size_t> triangles_by_part() const;
   void append_faces(const ObjMaterials& materials);
   void append_vertices();
@@ -51,9 +52,9 @@ class ObjBytes : public MeshBytes {
   std::vector<float> colours_;  // [vertex][colour_width_], or empty
   std::size_t colour_width_ = 0;
   std::vector<float> xyz_;
-  std::string header_;  // with texture coordinates
+  std::string header_;  // header with texture coordinates
   std::vector<UvList> uv_lists_;
-  std::map<std::array<std::uint64_t, 7>, std::size_t> list_of_texture_;  // by its bits
+  std::map<std::array<std::uint64_t, 7>, std::size_t> list_of_texture_;  // key: texture bits
   std::map<const AttributeSet*, std::vector<float>> uv_of_set_;
   std::map<std::uint32_t, std::optional<std::size_t>> uv_list_of_material_;
   std::uint64_t num_uv_ = 0;

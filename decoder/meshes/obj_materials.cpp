@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kMtlBegin = "# materials of rlpcdec\n";
 
-// A name as one word of a line.
+// Returns a name as one word of a line.
 std::string word_of(const std::string& name, const char* otherwise, std::uint32_t number) {
   if (name.empty()) return otherwise + std::to_string(number);
   std::string word = name;
@@ -30,7 +30,7 @@ const GltfJson* member(const GltfJson* object, const char* key) {
   return &(*object)[key];
 }
 
-// "Kd 0.8 0.8 0.8": the first three numbers of a list.
+// Appends "Kd 0.8 0.8 0.8": the first three numbers of a list.
 void append_colour(std::string& mtl, const char* key, const GltfJson* list) {
   if (list == nullptr || !list->is_array() || list->size() < 3) return;
   mtl += key;
@@ -89,12 +89,12 @@ std::string extension_of(const std::string& bytes) {
 
 }  // namespace
 
-// The images that materials name, each once.
+// Images that materials name, each once.
 class ObjMaterials::Images {
  public:
   Images(const StreamAsset& asset, std::string stem) : asset_(asset), stem_(std::move(stem)) {}
 
-  // "map_Kd walk_0.png", if a texture has an image of a known type.
+  // Appends "map_Kd walk_0.png", if a texture has an image of a known type.
   void append_map(std::string& mtl, const char* key, const GltfJson* texture) {
     const GltfJson* const image = image_of(texture);
     const auto view = image == nullptr ? std::nullopt : asset_.view_of(*image);
@@ -133,7 +133,7 @@ class ObjMaterials::Images {
 
   const StreamAsset& asset_;
   std::string stem_;
-  std::map<std::uint64_t, std::string> names_;  // by view
+  std::map<std::uint64_t, std::string> names_;  // key: view
   std::vector<CompanionFile> files_;
 };
 
@@ -171,7 +171,7 @@ ObjTexture ObjMaterials::texture(std::uint32_t number) const {
   return texture_of(nullptr);
 }
 
-// glTF's metallic-roughness model, in the words that readers of OBJ have for it.
+// Describes the metallic-roughness model of glTF in statements that readers of OBJ support.
 std::string ObjMaterials::mtl_of(std::uint32_t number, Images& images) const {
   std::string mtl = "newmtl " + material_name(number) + "\n";
   const GltfJson* const all = member(&asset_.root(), "materials");

@@ -1,4 +1,4 @@
-// The materials of OBJ files: their names, and the .mtl file and images beside them.
+// Materials of OBJ files: their names, and the .mtl file and images next to them.
 #pragma once
 
 #include <array>
@@ -12,12 +12,11 @@
 
 namespace rlpc {
 
-// Which texture coordinates the image of a material has, and where in it they lie
-// (KHR_texture_transform): as all that OBJ files have are coordinates of corners, theirs differ
-// from those of the stream.
+// Texture coordinates of the image of a material, and their transform (KHR_texture_transform),
+// which OBJ files apply to the coordinates of corners.
 struct ObjTexture {
-  std::uint32_t set = 0;                           // of uv0, uv1, ...
-  std::array<std::array<double, 3>, 2> rows = {};  // of (u, v, 1), v pointing down
+  std::uint32_t set = 0;                           // number of the set: 0 for uv0
+  std::array<std::array<double, 3>, 2> rows = {};  // matrix for (u, v, 1), v pointing down
   bool operator==(const ObjTexture&) const = default;
 };
 
@@ -25,15 +24,16 @@ class ObjMaterials {
  public:
   explicit ObjMaterials(const SinkOptions& options);
 
-  // Whether triangles without numbers have a material, the first.
+  // Returns whether triangles without numbers have a material, the first one.
   bool has_one() const { return has_one_; }
-  // Of `usemtl` and `g`: from the asset of the stream, otherwise numbered.
+  // Return names for `usemtl` and `g`: from the asset of the stream, otherwise numbered.
   std::string material_name(std::uint32_t number) const;
   std::string part_name(std::uint32_t number) const;
-  // Of its base colour; without an image of that, of its emission or normal.
+  // Returns the texture of the base colour of a material or, if that has no image, of its
+  // emission or normal.
   ObjTexture texture(std::uint32_t number) const;
-  // stem.mtl, with the materials that triangles use, and the images that it names. Empty: they
-  // use none.
+  // Returns stem.mtl, with the materials that triangles use, and the images that it names;
+  // empty if they use none.
   std::vector<CompanionFile> files(const std::string& stem) const;
 
  private:

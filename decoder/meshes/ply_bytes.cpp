@@ -100,7 +100,7 @@ void PlyBytes::append_vertex(std::uint32_t vertex, std::span<const float> normal
   if (options_.ascii) bytes_.back() = '\n';
 }
 
-// As text, with a blank, which becomes the line end after the last one.
+// Appends a number; as text, with a blank, which becomes the line end after the last number.
 void PlyBytes::append(float x) {
   if (!options_.ascii) return append_f32(bytes_, x);
   append_number(bytes_, x);

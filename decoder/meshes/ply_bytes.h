@@ -11,8 +11,8 @@
 
 namespace rlpc {
 
-// Texture coordinates are the properties s and t of vertices, which Blender and MeshLab read;
-// lists of texture coordinates in faces, which would leave vertices whole, only MeshLab does.
+// Texture coordinates are the properties s and t of vertices, which Blender and MeshLab read.
+// Lists of texture coordinates in faces, which would not split vertices, only MeshLab reads.
 class PlyBytes : public MeshBytes {
  public:
   explicit PlyBytes(const SinkOptions& options);
@@ -20,7 +20,7 @@ class PlyBytes : public MeshBytes {
   bool holds(const AttributeSet& set) const override;
 
  private:
-  // A set, and of each vertex the index of its value.
+  // Values of a set, and the index of the value of each vertex.
   struct Values {
     std::vector<float> numbers;
     std::size_t width = 0;
@@ -40,7 +40,7 @@ class PlyBytes : public MeshBytes {
   std::vector<std::uint32_t> normal_of_vertex_;
   Values uv_;
   Values colours_;
-  std::vector<float> xyz_;  // of the stream
+  std::vector<float> xyz_;  // vertices of the stream
   std::string header_;
   std::string faces_;
   std::string bytes_;

@@ -1,4 +1,4 @@
-// The sink of point caches: X.pc2 or X.mdd, with the mesh X.obj.
+// Sink of point caches: X.pc2 or X.mdd, with the mesh X.obj.
 #include <cassert>
 #include <filesystem>
 #include <limits>
@@ -20,12 +20,13 @@ namespace rlpc {
 
 namespace {
 
-constexpr std::uint32_t kMaxCount = std::numeric_limits<std::int32_t>::max();  // of the format
+constexpr std::uint32_t kMaxCount =
+    std::numeric_limits<std::int32_t>::max();  // limit of the format
 
 class PointCacheSink : public FrameSink {
  public:
-  // mesh: none in a live stream. library: the name of the .mtl file, the first of materials;
-  // empty: there are none.
+  // mesh: none in a live stream. library: name of the .mtl file, the first of materials; empty:
+  // none.
   PointCacheSink(SinkFormat format, SinkOptions options, OutputFile points,
                  std::optional<OutputFile> mesh, std::string library, CompanionFiles materials)
       : mdd_(format == SinkFormat::kMdd),
@@ -82,7 +83,7 @@ class PointCacheSink : public FrameSink {
     return mesh_->write(mesh->frame(positions));
   }
 
-  // Frames, points, and the times of the frames in seconds.
+  // Writes the numbers of frames and points, and the times of the frames in seconds.
   std::optional<OutputError> write_mdd_header() {
     std::string bytes;
     append_u32_be(bytes, options_.num_frames);

@@ -11,10 +11,10 @@
 
 namespace rlpc {
 
-// F.9 The .rlpa format. sets: with vertices in output order.
+// F.9 The .rlpa format. sets: vertices in output order.
 std::string rlpa_bytes(std::uint32_t num_vertices, std::uint32_t num_triangles,
                        const std::vector<AttributeSet>& sets);
-// The same as a file, which appears complete or not at all.
+// Writes .rlpa as a file, which appears complete or not at all.
 std::optional<OutputError> write_rlpa(const std::string& path, std::uint32_t num_vertices,
                                       std::uint32_t num_triangles,
                                       const std::vector<AttributeSet>& sets);

@@ -1,4 +1,4 @@
-// The sink of .rlpd files (Annex A).
+// Sink of .rlpd files (Annex A).
 #include <cassert>
 #include <utility>
 

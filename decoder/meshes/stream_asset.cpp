@@ -21,8 +21,8 @@ std::uint64_t number_in(const GltfJson& object, const char* key) {
 }  // namespace
 
 std::uint64_t asset_memory_bytes(std::string_view glb) {
-  constexpr std::uint64_t kTrees = 2;   // one that is read, one that is written
-  constexpr std::uint64_t kCopies = 5;  // of images: on their way to files
+  constexpr std::uint64_t kTrees = 2;   // input and output
+  constexpr std::uint64_t kCopies = 5;  // copies of images on their way to files
   const auto view = view_glb(glb);
   JsonShape shape;
   if (!view || measure_json(view->json, shape)) return kCopies * glb.size();

@@ -1,4 +1,4 @@
-// A view of a source, for a decoder, which would otherwise own the source.
+// Reference to a source, for a decoder, which would otherwise own the source.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace rlpc {
 
 class BorrowedSource final : public ByteSource {
  public:
-  // It must outlive this.
+  // source: must outlive it.
   explicit BorrowedSource(ByteSource& source) : source_(source) {}
   std::uint64_t size() const override { return source_.size(); }
   bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {

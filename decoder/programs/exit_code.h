@@ -6,7 +6,7 @@
 
 namespace rlpc {
 
-// Exit codes of rlpcdec and rlpcinfo; 0 to 3 are those of the conformance contract.
+// Exit codes of rlpcdec and rlpcinfo; the conformance contract defines 0 to 3.
 enum ExitCode : int {
   kExitDone = 0,
   kExitInvalid = 1,      // not a conforming stream

@@ -37,7 +37,7 @@ constexpr std::array<Known, 14> kKnown{{{"glTF", "glTF"},
                                          "an xz file"},
                                         {"RLPC", "a stream damaged by a transfer as text"}}};
 
-// The apparent type of the file; "": unknown, or it cannot be read again.
+// Returns the apparent type of the file; "" if it is unknown or cannot be read again.
 std::string guess(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return "";

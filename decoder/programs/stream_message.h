@@ -7,8 +7,8 @@
 
 namespace rlpc {
 
-// One line: the file and what is wrong with it. Names the option that sets an exceeded limit,
-// and the format of a file that is no stream.
+// Returns one line: the file and its error. Names the option that sets an exceeded limit, and
+// the format of a file that is not a stream.
 std::string stream_message(const std::string& path, const Error& error,
                            const DecodeLimits& limits);
 

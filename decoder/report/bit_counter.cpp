@@ -53,7 +53,7 @@ constexpr std::size_t kAssetPart = 15;
 constexpr std::size_t kAncillaryPart = 16;
 constexpr std::uint64_t kUnitSizeBits = 32;
 
-// The part of all other bits of a unit.
+// Returns the part of all other bits of a unit.
 std::size_t part_of_unit(UnitType type) {
   switch (type) {
     case UnitType::kSequenceHeader:

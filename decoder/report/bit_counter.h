@@ -14,24 +14,24 @@ namespace rlpc {
 
 inline constexpr std::size_t kNumStreamParts = 17;
 using PartSizes = std::array<std::uint64_t, kNumStreamParts>;  // bits
-// Bits of each part, in the order used in all tables.
+// Returns the names of the parts, in the order of all tables.
 const std::array<std::string_view, kNumStreamParts>& stream_part_names();
 
-// A trace that attributes the bits from each element to the next.
+// Trace that attributes the bits from each element to the next.
 class BitCounter final : public Trace {
  public:
-  explicit BitCounter(bool print = false);  // print: every element, on standard output
+  explicit BitCounter(bool print = false);  // print: writes every element to standard output
 
   void begin(const char* structure, std::uint64_t bit_pos) override;
   void element(const char* name, std::int64_t value, std::uint64_t bit_pos) override;
-  // To be called at the end of the stream.
+  // Ends the count. Must be called at the end of the stream.
   void finish(std::uint64_t bit_pos);
 
   const PartSizes& bits() const { return bits_; }
   std::uint64_t num_units() const { return num_units_; }
-  // The bits of each GOF with its slices and hashes; valid after finish().
+  // Returns the bits of each GOF with its slices and hashes; valid after finish().
   const std::vector<PartSizes>& gof_bits() const { return gof_bits_; }
-  // The same for each shared rig with its slices.
+  // Returns the bits of each shared rig with its slices; valid after finish().
   const std::vector<PartSizes>& model_bits() const { return model_bits_; }
 
  private:
@@ -43,17 +43,17 @@ class BitCounter final : public Trace {
   std::map<std::string_view, std::size_t> part_of_;
   PartSizes bits_{};
   std::size_t open_part_ = 0;
-  bool is_unit_size_ = false;  // the last element
+  bool is_unit_size_ = false;  // whether the last element was unit_size
   std::uint8_t ancillary_bit_ = 0;
-  std::uint8_t unit_type_ = 0;   // as in UnitType
-  bool rest_positions_ = false;  // within a slice of rest positions
+  std::uint8_t unit_type_ = 0;   // UnitType
+  bool rest_positions_ = false;  // whether in a slice of rest positions
   std::size_t unit_part_ = 0;
   std::uint64_t last_ = 0;
   std::uint64_t num_units_ = 0;
-  PartSizes unit_bits_{};  // of the current unit
+  PartSizes unit_bits_{};  // bits of the current unit
   std::vector<PartSizes> gof_bits_;
   std::vector<PartSizes> model_bits_;
-  bool of_rig_ = false;  // the last GOF or shared rig was one of the latter
+  bool of_rig_ = false;  // whether the last GOF or shared rig is a shared rig
 };
 
 }  // namespace rlpc

@@ -11,10 +11,10 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kMaxTriangles = 6000;  // of a picture: about 60 bytes each
+constexpr std::uint32_t kMaxTriangles = 6000;  // per picture, about 60 bytes each
 constexpr std::size_t kMaxPictures = 4;
 
-// Triangles with their edges.
+// Draws triangles with their edges.
 std::string picture(const CoarseMesh& mesh, const std::vector<Point>& points) {
   std::vector<Shape> shapes;
   for (const auto& [i, j, k] : mesh.triangles) {
@@ -63,7 +63,7 @@ std::string size_table(const CoarseMeshes& meshes) {
 
 std::vector<std::uint32_t> layers_of_pictures(const CoarseMeshes& meshes,
                                               std::uint32_t max_triangles) {
-  std::vector<double> sizes;  // of the meshes with 1, 2, ... layers
+  std::vector<double> sizes;  // sizes of the meshes with 1, 2, ... layers
   for (std::uint32_t layers = 1; layers <= meshes.num_layers(); ++layers) {
     const std::uint32_t size = meshes.size(layers).num_triangles;
     if (size > max_triangles) break;

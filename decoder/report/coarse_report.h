@@ -1,4 +1,4 @@
-// The coarse meshes of a stream (8.9.8) in a page: their sizes, and pictures of some of them.
+// Section of a page on the coarse meshes of a stream (8.9.8): sizes, and pictures of some.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace rlpc {
 
-// Numbers of layers, ascending: up to four coarse meshes, the last with as many triangles as
-// are allowed, each with about four times those of the one before.
+// Returns the numbers of layers of up to four coarse meshes, ascending: each has about four
+// times the triangles of the previous one, and the last as many as are allowed.
 std::vector<std::uint32_t> layers_of_pictures(const CoarseMeshes& meshes,
                                               std::uint32_t max_triangles);
 
-// xyz: all vertices of the frame in decoded order.
+// Adds the section. xyz: all vertices of the frame in decoded order.
 void add_coarse_section(HtmlPage& page, const CoarseMeshes& meshes, std::uint32_t frame,
                         std::span<const float> xyz);
 

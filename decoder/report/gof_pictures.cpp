@@ -11,15 +11,16 @@
 namespace rlpc {
 namespace {
 
-constexpr double kCaptionHeight = 20;  // of a view
+constexpr double kCaptionHeight = 20;  // caption of a view
 constexpr double kLegendTop = kPictureHeight + kCaptionHeight + 14;
 constexpr double kRow = 18;
 constexpr double kColumn = 112;
 constexpr std::size_t kColumns = 6;
 constexpr std::size_t kMaxRows = 10;
-constexpr std::size_t kMaxEntries = kMaxRows * kColumns;  // of a legend
+constexpr std::size_t kMaxEntries = kMaxRows * kColumns;  // entries of a legend
 
-// The whole mesh, or the largest coarse mesh that is allowed, or some vertices alone.
+// Mesh to draw: the whole mesh, the largest coarse mesh that is allowed, or some vertices
+// alone.
 struct ShownMesh {
   CoarseMesh mesh;
   std::string note;

@@ -13,9 +13,9 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kHues = 12;
 constexpr std::array<double, 3> kLightness{0.70, 0.84, 0.56};
-// Neighbours are never closer than this if there is a choice.
+// Smallest distance between neighbours, if possible.
 constexpr double kDistinct = 0.11;
-// The share of its lightness that the darkest shade takes from a colour.
+// Part of its lightness that a colour loses in the darkest shade.
 constexpr double kDarkening = 0.24;
 
 Colour colour_of(double lightness, double chroma, double degrees) {
@@ -23,7 +23,8 @@ Colour colour_of(double lightness, double chroma, double degrees) {
   return {lightness, chroma * std::cos(hue), chroma * std::sin(hue)};
 }
 
-// Successive ones have distant hues; the twelve hues in one lightness come before another.
+// Makes the palette. Successive colours have distant hues; it has all twelve hues in one
+// lightness before the next.
 std::vector<Colour> make_palette() {
   std::vector<Colour> palette;
   for (const double lightness : kLightness) {
@@ -34,7 +35,7 @@ std::vector<Colour> make_palette() {
   return palette;
 }
 
-// For each group, those with which it shares an edge.
+// Returns the groups with which each group shares an edge.
 std::vector<std::set<std::uint32_t>> neighbours_of_groups(
     std::uint32_t num_groups, std::span<const std::uint32_t> group_of_vertex,
     std::span<const Triangle> triangles) {
@@ -51,7 +52,7 @@ std::vector<std::set<std::uint32_t>> neighbours_of_groups(
   return neighbours;
 }
 
-// Of a component from 0 to 1, linear in light.
+// Returns the level of a component from 0 to 1, linear in light.
 int level_of(double linear) {
   const double v = std::clamp(linear, 0.0, 1.0);
   const double srgb = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
@@ -72,7 +73,7 @@ std::vector<Colour> group_colours(std::uint32_t num_groups,
   std::vector<std::size_t> uses(palette.size());
   std::vector<Colour> colours;
   for (std::uint32_t group = 0; group < num_groups; ++group) {
-    // Unused if there are enough, then distinct from its neighbours, then least used.
+    // Prefers unused colours, then colours distinct from the neighbours, then least used ones.
     const auto cost = [&](std::size_t c) {
       const bool recurs = uses[c] > 0 && num_groups <= palette.size();
       double nearest = kDistinct;

@@ -9,8 +9,8 @@
 namespace rlpc {
 namespace {
 
-constexpr double kBrightest = 9;   // of brightness()
-constexpr double kSeedAhead = 12;  // pixels: more than triangles of most pictures have
+constexpr double kBrightest = 9;   // maximum of brightness()
+constexpr double kSeedAhead = 12;  // pixels: larger than most triangles
 
 Point middle_of(const Point& a, const Point& b) {
   return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
@@ -53,8 +53,8 @@ class Drawing {
         {3 * p[2], piece(v, 1, "M" + pixel_text(p[0]) + " " + pixel_text(p[1]) + "h0")});
   }
 
-  // Its corners may be far apart, with the surface between: it is in front of what is around
-  // the nearest one.
+  // Adds a seed triangle. Its corners may be far apart, with the surface between: it is drawn
+  // in front of the surroundings of the nearest corner.
   void add_seed(const std::array<std::uint32_t, 3>& seed) {
     const std::array<Point, 3> corners{points_[seed[0]], points_[seed[1]], points_[seed[2]]};
     const double nearest = std::max({corners[0][2], corners[1][2], corners[2][2]});
@@ -91,7 +91,7 @@ std::string group_picture(const CoarseMesh& mesh, std::span<const Point> points,
     for (const std::uint32_t v : mesh.vertices) drawing.add_dot(v);
   }
   for (const auto& seed : vertices.seeds) drawing.add_seed(seed);
-  // The stroke closes the gaps that smoothing leaves between neighbours.
+  // The stroke closes gaps between neighbours due to smoothing.
   return "<g class=\"view\" transform=\"translate(" + pixel_text(x) + " " + pixel_text(y) +
          ")\" fill=\"currentColor\" stroke=\"currentColor\" stroke-width=\"" +
          (as_dots ? "3\" stroke-linecap" : "0.5\" stroke-linejoin") + "=\"round\">\n" +

@@ -1,4 +1,4 @@
-// A mesh as SVG with each vertex in the colour of its group.
+// Draws a mesh as SVG with each vertex in the colour of its group.
 #pragma once
 
 #include <array>
@@ -13,17 +13,17 @@
 
 namespace rlpc {
 
-// All vertices of the mesh, of which some may be drawn.
+// Groups of all vertices of the mesh, of which only some may be drawn.
 struct ColouredVertices {
   std::span<const std::uint32_t> group;                 // [num_vertices]
   std::span<const Colour> colours;                      // [num_groups]
-  std::span<const std::array<std::uint32_t, 3>> seeds;  // triangles to be outlined
+  std::span<const std::array<std::uint32_t, 3>> seeds;  // triangles to outline
 };
 
-// A `g` element of the size of a picture at (x, y). A triangle whose corners are in one group
-// is one path; of any other, each corner has a path of its own that begins at the vertex and
-// ends at the middles of edge and triangle. Paths of group 7 have the class g7; outlines of
-// seed triangles, seed. Without triangles, vertices are dots.
+// Returns a `g` element of the size of a picture at (x, y). A triangle whose corners are in one
+// group is one path; in any other, each corner has a path from the vertex to the middles of
+// edges and triangle. Paths of group 7 have the class g7; outlines of seed triangles have the
+// class seed. Without triangles, vertices are dots.
 std::string group_picture(const CoarseMesh& mesh, std::span<const Point> points,
                           const ColouredVertices& vertices, double x, double y);
 

@@ -1,4 +1,4 @@
-// A self-contained HTML page: no network, no other file.
+// Self-contained HTML page: needs no network and no other file.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,16 @@
 
 namespace rlpc {
 
-// With & < > and quotes as entities: for text and for attributes.
+// Replaces & < > and quotes by entities, for text and attributes.
 std::string escape_html(std::string_view text);
 
-// With this many significant digits: "0.0123", "1234", "0.000012".
+// Formats a number with significant digits: "0.0123", "1234", "0.000012".
 std::string number_text(double value, int digits = 4);
 
-// "1,234,567"
+// Formats "1,234,567".
 std::string grouped_text(std::uint64_t value);
 
-// A key figure with its caption: {"1.05", "bits per vertex and frame"}.
+// Key figure with its caption: {"1.05", "bits per vertex and frame"}.
 struct KeyFigure {
   std::string value;
   std::string name;
@@ -27,7 +27,7 @@ class HtmlPage {
  public:
   explicit HtmlPage(std::string_view title);
 
-  // Arguments below are HTML made by the caller, except `name`, `text` and figures.
+  // In the functions below, arguments are HTML, except `name`, `text` and figures.
   void add_fact(std::string_view name, std::string_view text);
   void add_key_figures(const std::vector<KeyFigure>& figures);
   void add_section(std::string_view title, std::string_view note, std::string_view html);

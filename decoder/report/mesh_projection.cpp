@@ -14,7 +14,7 @@ constexpr double kMargin = 8;
 
 double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// To the right, up, towards the viewer.
+// Turns points to the axes right, up, towards the viewer.
 std::vector<Point> turned(std::span<const float> xyz, double yaw) {
   constexpr double kPitch = 0.3;
   const Point right{std::cos(yaw), 0, -std::sin(yaw)};
@@ -30,7 +30,7 @@ std::vector<Point> turned(std::span<const float> xyz, double yaw) {
   return points;
 }
 
-// As large as fits the picture; y downwards.
+// Scales points to the size of the picture; y points down.
 void fit(std::vector<Point>& points) {
   constexpr double kFar = std::numeric_limits<double>::max();
   Point low{kFar, kFar, kFar};

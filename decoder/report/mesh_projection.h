@@ -1,4 +1,4 @@
-// What the pictures of meshes have in common: where points are, and what hides what.
+// Projection and hidden-surface removal for pictures of meshes.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// Of a picture, in pixels.
+// Size of a picture in pixels.
 inline constexpr double kPictureWidth = 340;
 inline constexpr double kPictureHeight = 300;
 
@@ -17,23 +17,23 @@ using Point = std::array<double, 3>;  // to the right, down, towards the viewer;
 
 enum class ViewFrom : std::uint8_t { kFront, kBehind };
 
-// All points in the first view of the mesh viewer (viewer/camera.js) without perspective, as
-// large as fits the picture, or in the opposite view.
+// Projects points to the first view of the mesh viewer (viewer/camera.js), or the opposite one,
+// without perspective and as large as fits the picture.
 std::vector<Point> projected(std::span<const float> xyz, ViewFrom from = ViewFrom::kFront);
 
-// Of a triangle: 0 (seen from the side) to 9 (from the front), whichever side is seen.
+// Returns the brightness of either side of a triangle: 0 (seen edge-on) to 9 (seen face-on).
 int brightness(const Point& a, const Point& b, const Point& c);
 
-// "M1.0 2.0L3.0 4.0L5.0 6.0Z"
+// Formats a path, "M1.0 2.0L3.0 4.0L5.0 6.0Z".
 std::string outline(std::span<const Point> points);
 
-// An element of a picture, and how near it is to the viewer.
+// Element of a picture, and its nearness to the viewer.
 struct Shape {
   double nearness = 0;
   std::string svg;
 };
 
-// From back to front; equally near ones in their order.
+// Joins the shapes from back to front; equally near shapes keep their order.
 std::string drawn(std::vector<Shape> shapes);
 
 }  // namespace rlpc

@@ -19,7 +19,7 @@ std::string data_html(const char* id, std::span<const std::uint8_t> bytes) {
          "</script>\n";
 }
 
-// The 99th percentile.
+// Returns the 99th percentile.
 float upper_value(std::vector<float> values) {
   const auto place =
       values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * 99 / 100);

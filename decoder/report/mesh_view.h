@@ -1,5 +1,4 @@
-// An interactive animation in a page, with the error shown in colour. Positions have 16 bits,
-// errors 8 bits.
+// Interactive animation in a page, with the error in colour. Positions have 16 bits, errors 8.
 #pragma once
 
 #include <cstddef>
@@ -14,22 +13,22 @@ namespace rlpc {
 
 class MeshView {
  public:
-  // Bytes of triangles and frames in a page, before base64 (4/3 of it).
+  // Maximum bytes of triangles and frames in a page, before base64 (which takes 4/3).
   static constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
 
   MeshView(std::uint32_t num_vertices, std::uint32_t num_frames,
            std::span<const Triangle> triangles, FrameRate frame_rate,
            std::size_t max_bytes = kMaxBytes);
 
-  // Shows every n-th frame, so that all fit max_bytes; 0: not even one fits.
+  // Returns n if the page shows every n-th frame, to fit max_bytes; 0 if no frame fits.
   std::uint32_t stride() const { return stride_; }
   bool shows(std::uint32_t frame) const { return stride_ > 0 && frame % stride_ == 0; }
-  // The frames shown, in order. Both arguments have 3 * num_vertices values.
+  // Adds the next frame that is shown. Both arguments: [num_vertices][3].
   void add_frame(std::span<const float> original, std::span<const float> decoded);
 
-  // A description of omitted frames; empty: none are omitted.
+  // Describes omitted frames; empty if none are omitted.
   std::string note() const;
-  // For a page with use_viewer(), after all frames. `diagonal`: errors are relative to it.
+  // Returns HTML for a page with use_viewer(), after all frames. diagonal: unit of errors.
   std::string html(double diagonal) const;
 
  private:
@@ -42,9 +41,9 @@ class MeshView {
   std::vector<Triangle> triangles_;
   FrameRate frame_rate_;
   std::uint32_t stride_ = 0;
-  std::vector<float> original_;  // frame after frame
+  std::vector<float> original_;  // [frame shown][num_vertices][3]
   std::vector<float> decoded_;
-  std::vector<float> errors_;  // distances
+  std::vector<float> errors_;  // [frame shown][num_vertices] distances
 };
 
 }  // namespace rlpc

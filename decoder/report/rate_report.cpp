@@ -15,14 +15,14 @@ constexpr std::size_t kMaxBars = 300;
 constexpr std::size_t kMaxGofRows = 200;
 constexpr std::size_t kMaxSliceTables = 20;
 
-// Colours of the parts, in their order, the same on all pages. The usually largest parts have
-// the first colours of the plots of scripts/compare.
+// Colours of the parts, in their order, the same on all pages. Parts that are usually the
+// largest have the first colours of the plots of scripts/compare.
 constexpr std::array<const char*, kNumStreamParts> kColours{
     "#8a8f98", "#b9bec6", "#0072b2", "#56b4e9", "#5f6b7a", "#d55e00",
     "#e69f00", "#009e73", "#8c564b", "#b8a800", "#a6761d", "#cc79a7",
     "#7b61c4", "#1f8a9e", "#3f7d20", "#94b447", "#c4c9d1"};
 
-// A series per part that occurs, with its bits as the only value.
+// Returns a series per part that occurs, with its bits as the only value.
 std::vector<ChartSeries> part_series(const PartSizes& bits) {
   std::vector<ChartSeries> series;
   for (std::size_t p = 0; p < kNumStreamParts; ++p) {
@@ -49,7 +49,7 @@ std::uint64_t sum(const PartSizes& bits) {
   return total;
 }
 
-// A row per temporal layer but the first: its slices together.
+// Returns a row per temporal layer except the first, with the totals of its slices.
 std::string temporal_layer_rows(const SlicedSummary& summary) {
   std::string html;
   for (std::uint32_t layer = 1; layer < summary.num_temporal_layers(); ++layer) {
@@ -64,8 +64,8 @@ std::string temporal_layer_rows(const SlicedSummary& summary) {
   return html;
 }
 
-// A row per component group, a column per layer group, and the size of the GOF or shared rig
-// when cut after each of them; and a row per temporal layer.
+// Returns a row per component group, a column per layer group, and the size of the GOF or
+// shared rig when cut after each of them; and a row per temporal layer.
 template <class Summary>
 std::string slice_table(const Summary& summary, const std::string& to_here) {
   std::string html = "<div class=\"wide\"><table>\n<thead><tr><th>bytes of slices</th>";
@@ -74,7 +74,7 @@ std::string slice_table(const Summary& summary, const std::string& to_here) {
     html += "<th>" + std::to_string(layers) + (layers == 1 ? " layer</th>" : " layers</th>");
   }
   html += "<th>" + to_here + "</th></tr></thead>\n";
-  // From 1 in a GOF that uses a shared rig.
+  // Component groups begin with 1 in a GOF that uses a shared rig.
   const std::vector<SliceEntry> slices = summary.slices_by_group();
   std::uint32_t group = slices.front().component_group_idx;
   const auto end = std::find_if(slices.begin(), slices.end(),
@@ -117,7 +117,7 @@ std::string part_table(const StreamRates& rates, const std::vector<ChartSeries>&
   return html + "</table></div>\n";
 }
 
-// Shared rigs are not in it: they belong to several GOFs.
+// Draws the rates of GOFs, without shared rigs, which belong to several GOFs.
 std::string gof_rate_chart(const StreamRates& rates) {
   const std::vector<GofSummary>& gofs = rates.summary->gofs;
   const std::vector<PartSizes>& bits = rates.counter->gof_bits();
@@ -165,7 +165,7 @@ void add_rate_section(HtmlPage& page, const StreamRates& rates) {
           gof_rate_chart(rates) + "</div>\n");
 }
 
-// The displayed counts, for each kind of GOF that occurs.
+// Returns the displayed counts of each kind of GOF that occurs.
 std::vector<GofFigure> figures_of_all_kinds(const std::vector<GofSummary>& gofs) {
   std::vector<GofFigure> figures;
   std::set<GofKind> kinds;
@@ -180,7 +180,7 @@ std::vector<GofFigure> figures_of_all_kinds(const std::vector<GofSummary>& gofs)
 
 namespace {
 
-// Rows with the figures, bytes and slices of each shared rig.
+// Returns rows with the figures, bytes and slices of each shared rig.
 std::string rig_table(const StreamRates& rates) {
   const auto& rigs = rates.summary->rigs;
   if (rigs.empty()) return "";

@@ -22,9 +22,9 @@ struct StreamRates {
   }
 };
 
-// Charts of the parts of the stream, and of the rate of each GOF over time.
+// Adds charts of the parts of the stream, and of the rate of each GOF over time.
 void add_rate_section(HtmlPage& page, const StreamRates& rates);
-// A table with a row per GOF and shared rig, and the contents of their slices.
+// Adds a table with a row per GOF and shared rig, and the contents of their slices.
 void add_gof_section(HtmlPage& page, const StreamRates& rates);
 
 }  // namespace rlpc

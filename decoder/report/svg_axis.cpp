@@ -10,7 +10,7 @@
 namespace rlpc {
 namespace {
 
-// Tolerance for ticks at the ends, because of rounding.
+// Returns whether a tick is within the axis, with a tolerance for rounding.
 bool is_within(double value, double low, double high) {
   const double slack = 1e-9 * (high - low);
   return low - slack <= value && value <= high + slack;

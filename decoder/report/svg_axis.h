@@ -10,12 +10,12 @@ namespace rlpc {
 // Maps values to pixels.
 class Axis {
  public:
-  // 0 < low if it is logarithmic; low < high.
+  // low < high; a logarithmic axis needs 0 < low.
   Axis(double low, double high, bool is_log, double first_pixel, double last_pixel);
 
   double at(double value) const;
-  // 1, 2 and 5 of each decade if it is logarithmic; else about `most` round numbers, not closer
-  // than `least_step`.
+  // Returns the ticks: 1, 2 and 5 of each decade of a logarithmic axis; otherwise about `most`
+  // round numbers, at least `least_step` apart.
   std::vector<double> ticks(int most, double least_step = 0) const;
 
  private:
@@ -29,7 +29,7 @@ class Axis {
 std::string pixel_text(double value);  // in tenths
 std::string tick_text(double value);
 
-// A text element; `attributes` follow those of its place.
+// Returns a text element; `attributes` follow those of its place.
 std::string svg_text(double x, double y, std::string_view anchor, std::string_view words,
                      std::string_view attributes = "");
 

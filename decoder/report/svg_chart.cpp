@@ -18,7 +18,7 @@ constexpr double kLeft = 64;
 constexpr double kRight = 14;
 constexpr double kTop = 14;
 constexpr double kBottom = 42;
-constexpr std::size_t kMaxPoints = 1000;  // of a line
+constexpr std::size_t kMaxPoints = 1000;  // per line
 
 struct Frames {
   Axis x;
@@ -69,7 +69,7 @@ std::string figure(std::string_view title, std::string_view unit, const std::str
   return html + svg + "</svg>\n" + legend(series) + "</figure>\n";
 }
 
-// The worst of every `group` values, among the finite ones if there are any.
+// Returns the worst of every `group` values, of the finite ones if any.
 std::vector<double> grouped(const ChartSeries& series, std::size_t group) {
   const auto takes_its_place = [&](double value, double worst) {
     if (!std::isfinite(value) || !std::isfinite(worst)) return std::isfinite(value);
@@ -87,7 +87,7 @@ std::vector<double> grouped(const ChartSeries& series, std::size_t group) {
   return worst;
 }
 
-// The axis label of groups.
+// Returns the axis label of groups.
 std::string frame_label(const std::vector<ChartSeries>& series, std::size_t group) {
   if (group == 1) return "frame";
   const auto count = std::count_if(series.begin(), series.end(),

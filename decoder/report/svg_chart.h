@@ -10,20 +10,20 @@
 
 namespace rlpc {
 
-// The legend of lines and bars.
+// Line or bars of a chart, with their legend.
 struct ChartSeries {
   std::string name;
-  std::string colour;  // as in CSS
+  std::string colour;  // CSS
   std::vector<double> values;
-  bool worst_is_smallest = false;  // as of PSNR
+  bool worst_is_smallest = false;  // true for PSNR, for example
 };
 
-// One value per series and frame; values that are not finite are omitted. Long animations show
-// the worst of several frames each, which the axis states.
+// Draws one value per series and frame; values that are not finite are omitted. Long animations
+// show the worst of several frames each, which the axis states.
 std::string line_chart(std::string_view title, std::string_view unit,
                        const std::vector<ChartSeries>& series);
 
-// Stacked bars along the frames, each as wide as its frames.
+// Frames of a stacked bar, which is as wide as they are.
 struct Bar {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
@@ -31,7 +31,7 @@ struct Bar {
 std::string stacked_bars(std::string_view title, std::string_view unit,
                          const std::vector<Bar>& bars, const std::vector<ChartSeries>& series);
 
-// A single bar, divided by the first value of each series.
+// Draws a single bar, divided by the first value of each series.
 std::string stacked_line(const std::vector<ChartSeries>& series);
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// Line plots as SVG files, for papers and pages: all styles are in them.
+// Line plots as SVG files with all styles, for papers and pages.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ enum class PlotMarker { kCircle, kSquare, kNone };
 
 struct PlotSeries {
   std::string name;
-  std::string colour;  // as in CSS
+  std::string colour;  // CSS
   std::vector<std::array<double, 2>> points;
   PlotLine line = PlotLine::kSolid;
   PlotMarker marker = PlotMarker::kCircle;
@@ -21,9 +21,8 @@ struct PlotSeries {
 
 struct PlotAxis {
   std::string label;
-  bool is_log = false;  // values are above 0; else, 0 is on the axis
-  // If there are any, the axis has these words at 1, 2, 3 ... in place of numbers, and is
-  // linear.
+  bool is_log = false;  // true: values are above 0; false: 0 is on the axis
+  // Words at 1, 2, 3 ... in place of numbers, on a linear axis; empty: numbers.
   std::vector<std::string> categories = {};
 };
 
@@ -34,10 +33,10 @@ struct Plot {
   std::vector<PlotSeries> series;
 };
 
-// The reason why a plot cannot be drawn; empty: it can.
+// Returns why a plot cannot be drawn; empty if it can.
 std::string check_plot(const Plot& plot);
 
-// The plot as SVG; it must be drawable.
+// Returns the plot as SVG. check_plot() must have passed.
 std::string plot_svg(const Plot& plot);
 
 }  // namespace rlpc

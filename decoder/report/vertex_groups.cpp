@@ -22,7 +22,7 @@ void add_kind(const ClusterGof& gof, const StreamContext&, VertexGroups& groups)
   std::reverse(groups.seeds.begin(), groups.seeds.end());
 }
 
-// Also those of slices that are absent, as the decoder predicts them.
+// Adds groups by influences, including those that the decoder predicts for absent slices.
 void add_kind(const SkinnedGof& gof, const StreamContext& context, VertexGroups& groups) {
   const SharedRig& rig = gof.rig ? *gof.rig : gof;
   groups.kind = GroupKind::kBones;

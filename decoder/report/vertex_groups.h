@@ -1,4 +1,4 @@
-// What the vertices of a GOF belong to, for pictures: its clusters, bones or patches.
+// Groups of the vertices of a GOF for pictures: its clusters, bones or patches.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ struct VertexGroups {
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
   std::uint32_t num_groups = 0;
-  // [num_vertices], in decoded order. A seed vertex is in the first cluster that it is a seed
-  // of. Of bones, that of the greatest weight; if there are several, the first.
+  // [num_vertices], in decoded order: the first cluster that a seed vertex seeds; the first
+  // bone with the greatest weight.
   std::vector<std::uint32_t> of_vertex;
-  // Vertices of the seed triangles, of those clusters that have one, in their order.
+  // Vertices of the seed triangles of clusters that have one, in the order of clusters.
   std::vector<std::array<std::uint32_t, 3>> seeds;
 };
 

@@ -31,7 +31,7 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
 
 double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// False: it has no length.
+// Normalises a vector. Returns false if it is zero.
 bool make_unit(Vec3& v) {
   const double length = std::sqrt(dot(v, v));
   if (!(length > 0.0)) return false;
@@ -39,7 +39,7 @@ bool make_unit(Vec3& v) {
   return true;
 }
 
-// F.8.4: the vector of a point.
+// F.8.4: returns the vector of a point.
 std::array<float, 3> unit_vector(std::uint32_t u, std::uint32_t v, std::uint32_t bits) {
   const double h = std::ldexp(1.0, static_cast<int>(bits) - 1) - 1.0;
   Vec3 n{u - h, v - h, 0.0};
@@ -191,8 +191,8 @@ void FrameNormals::keep_first() {
   corners_ = sectors_of_vertices(num_vertices, triangles_).corners;
 }
 
-// Finds the unit vectors that follow the surface (F.8.5): those that are what F.8.3 makes of
-// the first frame, and those around which there is no surface in it.
+// Finds the unit vectors that follow the surface (F.8.5): those that F.8.3 computes from the
+// first frame, and those around which that has no surface.
 void FrameNormals::find_followers() {
   const std::span<const std::int32_t> first = set_.first_positions;
   const CornerGeometry geometry(triangles_, first);

@@ -1,5 +1,4 @@
-// A mesh and its attributes as programs draw them: vertices with one value of each set, and
-// normals of any frame.
+// Mesh and attributes to draw: vertices with one value of each set, and normals of any frame.
 #pragma once
 
 #include <cstddef>
@@ -15,30 +14,30 @@
 
 namespace rlpc {
 
-// Whether vertices can have values of it: not those of triangles, nor of corners if there are
-// no triangles.
+// Returns whether vertices can have values of a set: sets of triangles cannot, nor sets of
+// corners without triangles.
 bool is_drawable(const AttributeHeader& header, std::span<const Triangle> triangles);
-// Those sets.
+// Returns the drawable sets.
 Vector<const AttributeSet*> drawable_sets(const Vector<AttributeSet>& sets,
                                           std::span<const Triangle> triangles);
-// Whether normals of any frame follow from it: the set `normal`, of vertices or corners.
+// Returns whether normals of any frame follow from a set: the set `normal`, of vertices or
+// corners.
 bool is_normal_set(const AttributeHeader& header);
 
 class DrawnMesh {
  public:
-  // sets: drawable ones; may be empty. They and the triangles must outlive it.
-  // Time and memory: of split_vertices().
+  // sets: drawable sets, may be empty. Sets and triangles must outlive it. Time and memory: see
+  // split_vertices().
   DrawnMesh(Vector<const AttributeSet*> sets, std::span<const Triangle> triangles,
             std::uint32_t num_vertices);
 
   const SplitVertices& vertices() const { return vertices_; }
   std::span<const AttributeSet* const> sets() const { return sets_; }
-  // The values of a set at the vertices: [vertex][number_components()].
+  // Returns the values of a set at the vertices: [vertex][number_components()].
   Vector<float> numbers(std::size_t set) const;
-  // Whether there is a set of normals.
   bool has_normals() const { return normals_.has_value(); }
   FrameNormals& normals() { return *normals_; }
-  // Index of the normal of each vertex, among those of normals(). Empty without.
+  // Returns the index in normals() of the normal of each vertex; empty without normals.
   std::span<const std::uint32_t> normal_of_vertex() const;
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 using Indices = Vector<std::uint32_t>;
 
-// Of each value, the index of the first one that is equal.
+// Returns, for each value, the index of the first equal value.
 Indices first_equals(const AttributeSet& set) {
   Indices first(set.num_values());
   std::iota(first.begin(), first.end(), 0U);
@@ -33,7 +33,7 @@ Indices first_equals(const AttributeSet& set) {
   return first;
 }
 
-// Of each corner, the index of its value.
+// Returns the index of the value of each corner.
 Indices values_of_corners(const AttributeSet& set, std::span<const Triangle> triangles) {
   assert(set.header.domain != AttributeDomain::kTriangle);
   const Indices first = first_equals(set);

@@ -11,12 +11,12 @@
 
 namespace rlpc {
 
-// What is written of a vertex v of the output.
+// Vertices of the output.
 struct SplitVertices {
   Vector<std::uint32_t> stream_vertex;  // [v], ascending
   // [set][v]: index of a value of the set, or of a normal of FrameNormals.
   Vector<Vector<std::uint32_t>> value_of_vertex;
-  // Of the output; the same order and corners as in the stream.
+  // Triangles of output vertices, in the order of the stream.
   Vector<Triangle> triangles;
 
   std::uint32_t num_vertices() const {
@@ -24,11 +24,10 @@ struct SplitVertices {
   }
 };
 
-// sets: of vertices, or of corners if there are triangles; may be empty. Values count as the
-// same if they are equal, except those of sets with faces: their normals differ from frame to
-// frame, so that their indices count. Vertices without triangles stay, with the value of their
-// own or the first one. Time: in proportion to n log n, memory to n, the number of corners, for
-// each set.
+// Splits the vertices. sets: of vertices, or of corners if there are triangles; may be empty.
+// Compares values or, in sets with faces, whose normals differ from frame to frame, indices.
+// Vertices without triangles stay, with their own value or the first one. For n corners, each
+// set takes time proportional to n log n, and memory proportional to n.
 SplitVertices split_vertices(std::span<const Triangle> triangles, std::uint32_t num_vertices,
                              std::span<const AttributeSet* const> sets);
 

@@ -1,4 +1,4 @@
-// What tests of skins move.
+// Animation for tests of skins.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace rlpc {
 inline constexpr std::size_t kVertices = 60;
 inline constexpr std::size_t kFrames = 50;
 
-// A tube around two bones that bends, and moves as a whole.
+// Tube around two bones that bends, and moves as a whole.
 struct Bending {
   Skeleton skeleton;
   std::vector<JointPlaces> places;

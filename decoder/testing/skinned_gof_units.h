@@ -1,4 +1,4 @@
-// The units of a skinned GOF through their parser, for tests.
+// Parses the units of a skinned GOF in tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace rlpc {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// Where slice units are said to begin.
+// Start of slice units, as passed to the parser.
 inline constexpr std::uint64_t kUnitBitPos = 12345;
 
 inline SequenceHeader main_header(std::uint32_t num_vertices, std::uint32_t num_frames) {

@@ -1,4 +1,4 @@
-// Reads a stream that is being written from its buffer.
+// Source that reads a stream from its buffer while it is being written.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace rlpc {
 
 class BufferSource final : public ByteSource {
  public:
-  // most: bytes after so many are not seen.
+  // most: number of bytes that are visible.
   explicit BufferSource(std::shared_ptr<StreamBuffer> stream,
                         std::uint64_t most = std::numeric_limits<std::uint64_t>::max())
       : stream_(std::move(stream)), most_(most) {}
@@ -24,7 +24,7 @@ class BufferSource final : public ByteSource {
   bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
     return offset <= size() && out.size() <= size() - offset && stream_->read(offset, out);
   }
-  // Bytes that a decoder forgets are released from now on.
+  // Releases bytes that a decoder forgets, from now on.
   void release_forgotten() { releases_ = true; }
   void forget(std::uint64_t before) override {
     if (releases_) stream_->forget(before);

@@ -10,7 +10,7 @@
 namespace rlpc {
 namespace {
 
-// What the encoder was allowed to write, it may read.
+// Returns limits without a maximum: the encoder may read whatever it was allowed to write.
 DecodeLimits no_limits() {
   constexpr auto kAny = std::numeric_limits<std::uint32_t>::max();
   return {kAny, kAny, kMaxFrames, std::numeric_limits<std::uint64_t>::max()};
@@ -46,7 +46,7 @@ class DecodedFrames final : public FrameReader {
   }
 
  private:
-  // Opens the stream if it is not open, and decodes what comes before the frames.
+  // Opens the stream if it is not open, and decodes everything before the frames.
   std::optional<std::string> open() {
     if (decoder_) return std::nullopt;
     auto source = std::make_unique<BufferSource>(stream_);

@@ -16,12 +16,12 @@
 
 namespace rlpc {
 
-// What the contexts of a set know of the sets before it.
+// Data of earlier sets for the contexts of a set.
 struct EarlierSets {
-  Vector<bool> seams;    // EarlierSeam: of the last set of corners; empty: none
+  Vector<bool> seams;    // EarlierSeam: seams of the last set of corners; empty: none
   Vector<bool> changes;  // EdgeChange: values of triangles differ across the edge
 
-  // F.4 KeepSet( ), of a set of triangles with these values.
+  // F.4 KeepSet( ), for a set of triangles with the given values.
   void add_triangle_values(std::span<const std::uint32_t> edge_mates,
                            std::span<const std::uint32_t> values, std::uint32_t components);
 };
@@ -35,7 +35,7 @@ class SeamContexts {
   BitModel& model(std::uint32_t c) {
     const std::uint32_t a = count_[vertex_of_corner(triangles_, c)];
     const std::uint32_t b = count_[vertex_of_corner(triangles_, next_corner(c))];
-    // Unordered pairs of 0 to 2.
+    // Index of an unordered pair of 0 to 2.
     std::uint32_t context = a + b;
     if (a == b && a > 0) {
       context = 3 + a;
@@ -78,7 +78,7 @@ class DiagonalContexts {
   Vector<std::uint8_t> count_;      // DiagonalCount, at most 3
 };
 
-// The means of residuals of one component in each class.
+// Models of values, and means of residuals per class and component.
 class ValueContexts {
  public:
   ValueContexts(const SectorOrder& order, std::uint32_t num_components)
@@ -91,7 +91,7 @@ class ValueContexts {
   std::array<BitModel, 64>& float_sizes(std::uint32_t x) {
     return float_sizes_[order_.class_of[x]];
   }
-  // ValueExpected( c, x ). Its shares are tuned on the six models with texture coordinates or
+  // ValueExpected( c, x ). Its weights are tuned on the six models with texture coordinates or
   // normals: 40, 124, 92, or 72, 184 without the latest, take 1 % more bytes.
   std::uint32_t expected(std::uint32_t c, std::uint32_t x) const {
     const std::uint64_t mean = mean_[order_.class_of[x]][c];
@@ -127,7 +127,7 @@ class ValueContexts {
   Vector<std::uint16_t> magnitude_;  // [sector][component], ValueMagnitude
 };
 
-// Values of triangles: candidates, and models (F.2.3 triangle_values( )).
+// Candidates and models for values of triangles (F.2.3 triangle_values( )).
 class TriangleContexts {
  public:
   TriangleContexts(std::span<const std::uint32_t> edge_mates, std::uint32_t num_components)
@@ -135,7 +135,7 @@ class TriangleContexts {
     mean_.fill(16 << 8);
   }
 
-  // FindCandidates( t ): triangles before t, at most 3; values: of all triangles before t.
+  // FindCandidates( t ): returns at most 3 triangles before t. values: all triangles before t.
   std::span<const std::uint32_t> find_candidates(std::uint32_t t,
                                                  std::span<const std::uint32_t> values);
   BitModel& same_rig(std::size_t i) { return same_models_[num_candidates_][i]; }

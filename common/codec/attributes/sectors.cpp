@@ -11,7 +11,7 @@
 namespace rlpc {
 namespace {
 
-// A list for each sector; sectors come in any order, one after the other.
+// Builds a list per sector, sector by sector in any order.
 class ListsOfSectors {
  public:
   explicit ListsOfSectors(std::uint32_t num_sectors)
@@ -44,7 +44,7 @@ class ListsOfSectors {
   Vector<std::uint32_t> items_;
 };
 
-// Sectors that complete triangles make come early, those of two or more first.
+// Queues of sectors that complete triangles, which come early; those of two or more come first.
 class SectorQueues {
  public:
   explicit SectorQueues(const Sectors& sectors)
@@ -54,7 +54,7 @@ class SectorQueues {
         degree_(sectors.count(), 0) {}
 
   bool is_placed(std::uint32_t x) const { return is_placed_[x]; }
-  // One that has not been placed; there must be one.
+  // Returns a sector that has not been placed; one must exist.
   std::uint32_t next() {
     for (std::size_t d = kMostCounted; d > 0; --d) {
       std::size_t& head = heads_[d - 1];
@@ -83,8 +83,9 @@ class SectorQueues {
 
   const Sectors& sectors_;
   Vector<bool> is_placed_;
-  Vector<std::uint8_t> num_known_;  // corners of each triangle
-  Vector<std::uint8_t> degree_;     // triangles with two known corners, at most kMostCounted
+  Vector<std::uint8_t> num_known_;  // [triangle] known corners
+  Vector<std::uint8_t>
+      degree_;  // [sector] triangles with two known corners, at most kMostCounted
   std::array<Vector<std::uint32_t>, kMostCounted> queues_;
   std::array<std::size_t, kMostCounted> heads_{};
   std::uint32_t lowest_ = 0;

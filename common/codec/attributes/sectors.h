@@ -18,11 +18,11 @@ struct Sectors {
   std::uint32_t count() const { return static_cast<std::uint32_t>(corners.size()); }
 };
 
-// F.4 MakeSectors( ): of corners, from the edges that are seams; of vertices.
+// F.4 MakeSectors( ): sectors of corners, from the edges that are seams, or of vertices.
 Sectors sectors_of_corners(std::span<const std::uint32_t> edge_mates,
                            const Vector<bool>& seams);
 Sectors sectors_of_vertices(std::uint32_t num_vertices, std::span<const Triangle> triangles);
-// The corners of each sector, ascending; of_corner: below num_sectors.
+// Returns the corners of each sector, ascending. of_corner: sectors below num_sectors.
 ListOfLists<std::uint32_t> corners_of_sectors(std::uint32_t num_sectors,
                                               std::span<const std::uint32_t> of_corner);
 
@@ -36,7 +36,7 @@ struct SectorOrder {
   explicit SectorOrder(const Sectors& sectors);
 
   Vector<std::uint32_t> order;           // SectorOrder
-  ListOfLists<std::uint32_t> triangles;  // SectorTriangles: corners, of each sector
+  ListOfLists<std::uint32_t> triangles;  // SectorTriangles: [sector] corners
   ListOfLists<std::uint32_t> ring;       // SectorRing
   Vector<std::uint32_t> neighbour;       // SectorNeighbour; kNoSector: none
   Vector<std::uint8_t> class_of;         // SectorClass

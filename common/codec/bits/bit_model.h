@@ -8,11 +8,11 @@
 
 namespace rlpc {
 
-// The mean of a fast and a slow estimate of P(bin == 1), both in 1/65536. Each starts as a
-// plain average of the bins, until its adaptation rate is reached.
+// Mean of a fast and a slow estimate of P(bin == 1), both in 1/65536. Each starts as a plain
+// average of the bins, until its adaptation rate is reached.
 class BitModel {
  public:
-  // In 1/65536, in the range 71 to 65465, which bounds the cost of a bin.
+  // Returns P(bin == 1) in 1/65536, from 71 to 65465, which bounds the cost of a bin.
   std::uint32_t probability() const { return (fast_ + slow_) >> 1; }
 
   void update(bool bin) {

@@ -15,11 +15,11 @@ struct Range {
   std::int64_t max = 0;
 };
 
-// Reads one unit's bits; does not own the bytes. Sticky: after the first failure every read
-// returns the lowest legal value, so that loops end and indices stay in range.
+// Reads the bits of one unit; does not own the bytes. Errors are sticky: after the first one,
+// every read returns the lowest legal value, so that loops end and indices stay in range.
 class BitReader {
  public:
-  // first_bit is the position of bytes[0] in the stream, for error positions and traces.
+  // first_bit: position of bytes[0] in the stream, for error positions and traces.
   explicit BitReader(std::span<const std::uint8_t> bytes, std::uint64_t first_bit = 0,
                      Trace* trace = nullptr)
       : bytes_(bytes), first_bit_(first_bit), trace_(trace) {}
@@ -33,7 +33,7 @@ class BitReader {
   std::int32_t se(const char* element, Range range, const char* rule);
   // Reads zero bits up to the next byte boundary (rule R-BIT-02).
   void byte_alignment();
-  // The bytes from the current position on, which must be byte-aligned.
+  // Returns the bytes from the current position on, which must be byte-aligned.
   std::span<const std::uint8_t> remaining_bytes() const;
   // Fails unless every byte has been read (rule R-BIT-03).
   void expect_end();

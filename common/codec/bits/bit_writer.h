@@ -14,13 +14,13 @@ class BitWriter {
   void ue(std::uint32_t value);  // value <= 2^32 - 2
   void se(std::int32_t value);
   void byte_alignment();
-  // Both require a byte-aligned position.
+  // append() and take() require a byte-aligned position.
   void append(const Vector<std::uint8_t>& bytes);
   Vector<std::uint8_t> take();
 
  private:
   Vector<std::uint8_t> bytes_;
-  int free_bits_ = 0;  // in the last byte
+  int free_bits_ = 0;  // free bits of the last byte
 };
 
 }  // namespace rlpc

@@ -16,7 +16,7 @@ inline constexpr int kAxisFractionBits = 30;  // unit vectors of the axes
 inline constexpr int kQuaternionFractionBits = 30;
 inline constexpr int kPointFractionBits = 4;  // positions of the rest shape and of moved points
 
-// A point, rounded to the grid.
+// Rounds a point to the grid.
 constexpr std::int64_t to_grid(std::int64_t point) {
   return round2(point, kPointFractionBits) * (1 << kPointFractionBits);
 }

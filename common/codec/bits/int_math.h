@@ -37,7 +37,7 @@ constexpr std::int64_t clip3(std::int64_t lo, std::int64_t hi, std::int64_t x) {
   return std::clamp(x, lo, hi);
 }
 
-// 5.3 ClipSigned(bits, x): x clipped to the range of a signed number of that many bits.
+// 5.3 ClipSigned(bits, x): x clipped to the range of signed numbers with that many bits.
 constexpr std::int32_t clip_signed(int bits, std::int64_t x) {
   assert(bits >= 1 && bits <= 32);
   const std::int64_t half = std::int64_t{1} << (bits - 1);
@@ -65,7 +65,7 @@ constexpr std::int64_t isqrt(std::int64_t x) {
 }
 static_assert(isqrt(0) == 0 && isqrt(15) == 3 && isqrt(16) == 4);
 
-// A vector of clause 5.4: differences and cross products of positions, |component| < 2^56.
+// Vector of clause 5.4: differences and cross products of positions, |component| < 2^56.
 using Vec3l = std::array<std::int64_t, 3>;
 
 // 5.4 Normalize3(v): the unit vector along v with 30 fractional bits; zero for the zero vector.

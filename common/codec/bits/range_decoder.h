@@ -53,13 +53,13 @@ class RangeDecoder {
     return value;
   }
 
-  // False if the first four bytes are all 255, which no encoder writes (rule R-RNG-02).
+  // Returns false if the first four bytes are all 255, which no encoder writes (R-RNG-02).
   bool starts_legally() const { return starts_legally_; }
-  // True if the section held exactly the bytes that were needed (rule R-RNG-01).
+  // Returns whether the section held exactly the bytes that were needed (R-RNG-01).
   bool at_exact_end() const { return taken_ == section_.size() + 3; }
-  // Whether bytes past the end were needed; the caller may stop decoding.
+  // Returns whether bytes past the end were needed; the caller may stop decoding.
   bool overrun() const { return taken_ > section_.size() + 3; }
-  // Bits consumed so far, rounded up; for traces and error positions.
+  // Returns the bits consumed so far, rounded up; for traces and error positions.
   std::uint64_t bits_spent() const {
     return std::uint64_t{taken_} * 8 - 1 - static_cast<std::uint64_t>(floor_log2(range_));
   }

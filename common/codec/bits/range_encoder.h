@@ -39,7 +39,7 @@ class RangeEncoder {
     }
   }
 
-  // Bytes so far, but for those that finish() adds.
+  // Returns the number of bytes so far, without those that finish() adds.
   std::size_t size() const { return bytes_.size() + pending_ff_ + (has_cache_ ? 1 : 0); }
 
   // Ends the section: one more byte suffices, as range >= 2^24. The encoder cannot be used

@@ -18,7 +18,7 @@ inline constexpr std::uint64_t kMaxResidual = (1U << 28) - 1;
 
 struct ResidualModels {
   std::array<std::array<BitModel, kResidualPrefix>, kResidualContexts> prefix;
-  std::array<std::array<BitModel, 3>, kResidualContexts> low;  // by Min(prefix, 2)
+  std::array<std::array<BitModel, 3>, kResidualContexts> low;  // [context][Min(prefix, 2)]
 };
 
 struct ResidualContext {

@@ -12,9 +12,9 @@ class Trace {
   Trace& operator=(const Trace&) = delete;
   virtual ~Trace() = default;
 
-  // A syntax structure begins, for example "gof".
+  // Receives the beginning of a syntax structure, for example "gof".
   virtual void begin(const char* structure, std::uint64_t bit_pos) = 0;
-  // bit_pos: first bit of the element from the start of the stream; for arithmetic-coded
+  // Receives an element. bit_pos: its first bit from the start of the stream; for range-coded
   // elements, the end of the bits spent on the preceding elements.
   virtual void element(const char* name, std::int64_t value, std::uint64_t bit_pos) = 0;
 };

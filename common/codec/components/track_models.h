@@ -25,7 +25,8 @@ struct RunningMagnitude {
   }
 };
 
-// 9.6.3 and 9.8.2: of the running magnitude of a track, and the running mean of its frame.
+// 9.6.3 and 9.8.2 expected magnitude, from the running magnitude of a track and the running
+// mean of a frame.
 constexpr std::uint32_t expected_in_track(const RunningMagnitude& of_track,
                                           std::uint32_t of_frame) {
   return (of_track.fast + of_track.slow + 2 * of_frame) >> 6;
@@ -44,9 +45,9 @@ enum class HeaderField : std::uint8_t {
   kTemporalBits
 };
 
-// 9.8.1: models of the residuals of bones or of trajectories: of level 0, and of all others.
+// 9.8.1: models of residuals of bones or trajectories: one for level 0, one for all others.
 using TrackModels = std::array<ResidualModels, 2>;
-// The index of a level among them.
+// Returns the index of a level in TrackModels.
 constexpr std::size_t models_of_level(int level) { return level == 0 ? 0 : 1; }
 
 // Running magnitudes of a track, [level][coordinate].

@@ -1,7 +1,7 @@
 // 8.17.1 Order of a track: the order in which the values of a track are coded. A sequential
-// track goes from frame to frame. A hierarchical one has levels: level 0 is every
+// track goes from frame to frame. A hierarchical track has levels: level 0 is every
 // 2^track_levels-th frame; each further level halves the distance.
-// 8.17.3 Temporal layers: the highest levels can be sent apart.
+// 8.17.3 Temporal layers: the highest levels can be sent separately.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@
 namespace rlpc {
 
 inline constexpr int kMaxTrackLevels = 7;
-// Values of rotation_between, origin_between and temporal_between: sequential; hierarchical,
-// from two neighbours; hierarchical, from four where there are so many.
+// Largest value of rotation_between, origin_between and temporal_between. 0: sequential; 1:
+// hierarchical, from two neighbours; 2: hierarchical, from four neighbours where they exist.
 inline constexpr int kMaxBetween = 2;
 
-// A value of a track.
+// Place of a value in a track.
 struct TrackPlace {
   std::uint32_t frame = 0;
   std::uint32_t stride = 1;  // earlier values at multiples of it are known
   int level = 0;
-  int neighbours = 0;  // that predict it from both sides: 0, 2 or 4
+  int neighbours = 0;  // number that predict it from both sides: 0, 2 or 4
 };
 
 // 8.17.1 TrackOrder( between )
 Vector<TrackPlace> track_order(std::uint32_t num_frames, int track_levels, int between);
 
-// What the tracks of a GOF have in common; a shared rig has none.
+// Frames and levels of all tracks of a GOF; a shared rig has none.
 struct TrackFrames {
   std::uint32_t count = 0;  // num_gof_frames
   int levels = 0;           // track_levels
@@ -36,7 +36,7 @@ struct TrackFrames {
 // 8.17.3 PlacesOfLayer( between, layer )
 Vector<TrackPlace> places_of_layer(const TrackFrames& frames, int between, int layer);
 
-// 8.17.2 Prediction at a place: a coordinate of the sum of the neighbours that it has.
+// 8.17.2 Prediction at a place: a coordinate of the weighted sum of its neighbours.
 // series(f) returns the value at frame f; |values| < 2^32.
 template <class Series>
 std::int64_t sum_of_neighbours(const Series& series, const TrackPlace& at) {

@@ -12,9 +12,9 @@ namespace {
 constexpr int kNarrowBits = 16;
 constexpr int kLowLimbBits = 13;
 constexpr std::int64_t kMaxSegmentSum = (std::int64_t{1} << 31) - 1;
-constexpr std::size_t kMaxRows = 24;  // of the sums that are found at a time
+constexpr std::size_t kMaxRows = 24;  // rows of sums that are computed at a time
 
-// The limbs of a factor, the lowest first.
+// Returns the limbs of a factor, the lowest first.
 Vector<FactorLimb> limbs_of(int bits) {
   if (bits <= kNarrowBits) return {{0, bits - 1, false}};
   return {{0, kLowLimbBits - 1, true}, {kLowLimbBits, bits - 1 - kLowLimbBits, false}};
@@ -66,7 +66,7 @@ Vector<std::int32_t> SpatialFactors::tile(std::size_t tile) const {
 }
 
 // Makes the segments of the products of one list of spatial limbs and one limb of the temporal
-// factors, the low or only one (0), or the high one (1).
+// factors: the low or only limb (0), or the high limb (1).
 class ComponentSum::SegmentMaker {
  public:
   SegmentMaker(ComponentSum& sum, std::span<const TemporalFactor> temporal, std::size_t list,
@@ -90,7 +90,7 @@ class ComponentSum::SegmentMaker {
   }
 
  private:
-  // Of the products of a component; 0 if there are none.
+  // Returns the bound of the products of a component; 0 if it has none.
   std::int64_t bound_of(const SpatialFactors::Limbs::Place& place) const {
     if (place.component >= temporal_.size()) return 0;
     const int bits = temporal_[place.component].bits;
@@ -100,7 +100,7 @@ class ComponentSum::SegmentMaker {
     return std::int64_t{1} << (limbs[limb_].size_log2 + place.size_log2);
   }
 
-  // Adds a pair, of which the sides with a bound of 0 count as zeros.
+  // Adds a pair, whose sides with a bound of 0 count as zeros.
   void add(std::size_t pair, const std::array<std::int64_t, 2>& bounds) {
     const std::int64_t bound = bounds[0] + bounds[1];
     if (bound == 0) return;
@@ -151,7 +151,7 @@ void ComponentSum::add_tile(std::size_t tile, std::size_t first_row, std::size_t
                             std::span<std::int64_t> sums) const {
   assert(tile < spatial_->num_tiles() && first_row + num_rows <= num_rows_);
   assert(sums.size() == num_rows * kTileValues);
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): sum_products() fills what is read.
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): sum_products() sets what is read.
   std::array<std::int32_t, kMaxRows * kTileValues> of_segment;
   for (std::size_t r = 0; r < num_rows; r += kMaxRows) {
     const std::size_t rows = std::min(kMaxRows, num_rows - r);

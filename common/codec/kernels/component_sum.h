@@ -1,6 +1,6 @@
-// The PCA model (clause 8.5): sums of products of temporal and spatial factors, exact in
-// integers. All go through 16 x 16 -> 32-bit products; sums are exact, so that every order of
-// summation and every vector width gives the same result.
+// PCA model (clause 8.5): sums of products of temporal and spatial factors, exact in integers.
+// All products are 16 x 16 -> 32 bits; sums are exact, so that every order of summation and
+// every vector width yields the same result.
 #pragma once
 
 #include <array>
@@ -15,7 +15,8 @@
 
 namespace rlpc {
 
-// Narrower spatial factors are normalised to this width, so that temporal factors can be short.
+// Width to which narrower spatial factors are normalised, so that temporal factors can be
+// short.
 inline constexpr int kSpatialNormBits = 13;
 
 // Table 8-1: 2^(i / 8) with 15 fractional bits.
@@ -29,12 +30,12 @@ constexpr std::int32_t scale_temporal(std::int32_t value, int scale_idx, int tem
   return clip_signed(temporal_bits, round2(product, 19 - scale_idx / 8));
 }
 
-// Width of a spatial factor after normalisation.
+// Returns the width of a spatial factor after normalisation.
 constexpr int spatial_factor_bits(int spatial_bits) {
   return spatial_bits > kSpatialNormBits ? spatial_bits : kSpatialNormBits;
 }
 
-// A limb of at most 16 bits of a factor: floor(value / 2^shift), or the remainder of that.
+// Limb of a factor, at most 16 bits: floor(value / 2^shift), or the remainder.
 struct FactorLimb {
   int shift;
   int size_log2;  // |limb| <= 2^size_log2
@@ -43,20 +44,20 @@ struct FactorLimb {
   std::int32_t of(std::int32_t value) const;
 };
 
-// The spatial factors of components, laid out for summation; any number of sums can share them.
+// Spatial factors of components, laid out for summation; any number of sums can share them.
 // Factors of more than 16 bits are split into two limbs of at most 14 bits, so that all
-// products are of 16 x 16 bits.
+// products are 16 x 16 bits.
 class SpatialFactors {
  public:
-  // num_values: of each component.
+  // num_values: spatial values per component.
   explicit SpatialFactors(std::size_t num_values) : num_values_(num_values) {}
 
   // Adds the factor of the next component. spatial: before normalisation, within spatial_bits
   // (at most 24); value i is spatial[i * stride].
   void add(std::span<const std::int32_t> spatial, int spatial_bits, std::size_t stride = 1);
 
-  // The factors of the values of a tile, normalised: [kTileValues][num_components]; 0 where
-  // there are fewer values.
+  // Returns the factors of a tile, normalised: [kTileValues][num_components]; 0 past the last
+  // value.
   Vector<std::int32_t> tile(std::size_t tile) const;
 
   std::size_t num_values() const { return num_values_; }
@@ -66,7 +67,7 @@ class SpatialFactors {
  private:
   friend class ComponentSum;
 
-  // Limbs of equal shift; two at a time make a pair.
+  // Limbs of equal shift, in pairs.
   struct Limbs {
     struct Place {
       std::size_t component;
@@ -78,11 +79,11 @@ class SpatialFactors {
 
   std::size_t num_values_;
   std::size_t num_components_ = 0;
-  std::array<Limbs, 2> limbs_;  // by FactorLimb::shift: 0, and that of high limbs
+  std::array<Limbs, 2> limbs_;  // limbs of shift 0, and high limbs
 };
 
-// The temporal factor of a component, [num_rows], scaled, within `bits` (at most 26). No bits:
-// the component does not occur.
+// Temporal factor of a component, [num_rows], scaled, within `bits` (at most 26). 0 bits: the
+// component does not occur.
 struct TemporalFactor {
   Vector<std::int32_t> values;
   int bits = 0;
@@ -91,23 +92,23 @@ struct TemporalFactor {
 class ComponentSum {
  public:
   // num_rows: temporal values per component, one per frame or per coordinate of a frame.
-  // temporal: of the first components of `spatial`; the others do not occur. Read during the
-  // call.
+  // temporal: factors of the first components of `spatial`; the others do not occur. Read
+  // during the call.
   ComponentSum(std::shared_ptr<const SpatialFactors> spatial,
                std::span<const TemporalFactor> temporal, std::size_t num_rows,
                const Kernels& loops = kernels().back());
 
   std::size_t num_values() const { return spatial_->num_values(); }
   // 8.5.3: adds the sum over the components of temporal(row) * spatial(i), at most 2^58, for
-  // several rows and the values of a tile, kTileValues * tile and after, to sums
-  // [num_rows][kTileValues]; nothing is added where there are fewer values.
+  // several rows and the values of a tile, from kTileValues * tile on, to sums
+  // [num_rows][kTileValues]; adds nothing past the last value.
   void add_tile(std::size_t tile, std::size_t first_row, std::size_t num_rows,
                 std::span<std::int64_t> sums) const;
 
  private:
   // Consecutive pairs whose products have a sum within 31 bits, scaled by 2^shift.
   struct Segment {
-    std::size_t list;  // of SpatialFactors::limbs_
+    std::size_t list;  // index in SpatialFactors::limbs_
     int shift;
     std::size_t first_pair;
     std::size_t num_pairs;

@@ -1,7 +1,6 @@
-// The inner loops of reconstruction: over the vertices of a tile (8.5.3 and 8.14.3), and over
-// the neighbours of a vertex (8.15). Plain loops are the definition; twins for AVX2 and
-// WebAssembly SIMD do the same faster. All arithmetic is exact, so that both give the same
-// integers.
+// Inner loops of reconstruction: over the vertices of a tile (8.5.3 and 8.14.3), and over the
+// neighbours of a vertex (8.15). Plain loops are the definition; twins for AVX2 and WebAssembly
+// SIMD are faster. All arithmetic is exact, so that both yield the same integers.
 #pragma once
 
 #include <array>
@@ -25,9 +24,10 @@ struct FactorPairs {
 
 // Rest positions moved by a bone.
 struct BoneArms {
-  // [size]: position relative to the pivot, |arm| <= 2^29; three more numbers must be readable.
+  // [size]: position relative to the pivot, |arm| <= 2^29; three more numbers must be readable,
+  // as for weight.
   std::array<const std::int32_t*, 3> arm;
-  const std::int32_t* weight;  // likewise
+  const std::int32_t* weight;  // [size]
   std::size_t size;
 };
 
@@ -47,8 +47,8 @@ struct Kernels {
   void (*add_weighted)(const std::int32_t* values, std::int32_t weight, std::size_t n,
                        std::int64_t* sums);
   // 8.12.3 Moved point, for one coordinate: places[i] = the rest position as moved by the bone,
-  // times its weight; places [kTileValues], those past the size are undefined. axis: that
-  // coordinate of the axes of the bone. |axis| <= 2^30 + 16, |origin| <= 2^30.
+  // times its weight; places [kTileValues], undefined past the size. axis: that coordinate of
+  // the axes of the bone. |axis| <= 2^30 + 16, |origin| <= 2^30.
   void (*weighted_places)(const BoneArms& arms, const std::array<std::int32_t, 3>& axis,
                           std::int32_t origin, std::int64_t* places);
   // 8.14.3 Positions, for one coordinate: positions [kTileValues] from sums of weighted places
@@ -62,7 +62,7 @@ struct Kernels {
                          std::int64_t error, std::int64_t variance);
 };
 
-// The kernels that this machine supports: the plain ones first, the fastest last.
+// Returns the kernels that this machine supports: the plain loops first, the fastest last.
 std::span<const Kernels> kernels();
 
 }  // namespace rlpc

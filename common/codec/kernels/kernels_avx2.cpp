@@ -18,13 +18,13 @@ RLPC_AVX2 __m256i load(const void* p) {
   return _mm256_loadu_si256(static_cast<const __m256i*>(p));
 }
 RLPC_AVX2 void store(void* p, __m256i x) { _mm256_storeu_si256(static_cast<__m256i*>(p), x); }
-// Four 32-bit numbers, extended to 64 bits.
+// Loads four 32-bit numbers, extended to 64 bits.
 RLPC_AVX2 __m256i load_widened(const std::int32_t* p) {
   return _mm256_cvtepi32_epi64(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)));
 }
 
-// round2 of 64-bit numbers below 2^62 in magnitude. They are made positive first, because AVX2
-// lacks a 64-bit arithmetic shift.
+// Computes round2 of 64-bit numbers below 2^62 in magnitude. They are made positive first,
+// because AVX2 lacks a 64-bit arithmetic shift.
 class Round2 {
  public:
   RLPC_AVX2 explicit Round2(int n)
@@ -109,7 +109,7 @@ RLPC_AVX2 void weighted_places(const BoneArms& arms, const std::array<std::int32
     const __m256i of_z = _mm256_mul_epi32(z, load_widened(arms.arm[2] + i));
     const __m256i sum =
         _mm256_add_epi64(_mm256_add_epi64(of_x, of_y), _mm256_add_epi64(of_z, half));
-    // The rotated arm has 32 bits, which is all that the products read.
+    // The rotated arm has 32 bits, all that the products read.
     const __m256i turned = _mm256_srli_epi64(sum, kQuaternionFractionBits);
     const __m256i weight = load_widened(arms.weight + i);
     store(places + i,

@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-// Must only be called on machines with AVX2.
+// Kernels for machines with AVX2 only.
 extern const Kernels kKernelsAvx2;
 
 }  // namespace rlpc

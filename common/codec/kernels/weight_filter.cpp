@@ -57,7 +57,7 @@ std::int64_t predict_offset(const FilterState& filter, const std::int32_t* offse
 
 namespace {
 
-// noise( shift ): the variance of a residual in the unit of the scale.
+// noise( shift ): variance of a residual in the unit of the scale.
 template <class Noise>
 void adapt_filter(const FilterForm& form, const FilterState& filter,
                   const std::int32_t* offsets, std::int64_t error, Noise noise) {

@@ -22,7 +22,7 @@ RLPC_AVX2 void store(std::int32_t* p, __m256i x) {
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), x);
 }
 
-// Sum of the products of 32-bit numbers, in four 64-bit numbers.
+// Returns the sum of the products of 32-bit numbers, in four 64-bit numbers.
 RLPC_AVX2 __m256i product_sums(__m256i a, __m256i b) {
   const __m256i even = _mm256_mul_epi32(a, b);
   const __m256i odd = _mm256_mul_epi32(_mm256_srli_epi64(a, 32), _mm256_srli_epi64(b, 32));
@@ -41,8 +41,8 @@ struct Vectors {
   const __m256i& operator[](std::size_t k) const { return list[k]; }
 };
 
-// A number with the floor_log2 of the largest magnitude: all bits that are set in any; at least
-// 1.
+// Returns a number with the floor_log2 of the largest magnitude: the union of all bits, at
+// least 1.
 template <std::size_t kVectors>
 RLPC_AVX2 std::uint32_t bits_of(const Vectors<kVectors>& x) {
   __m256i bits = _mm256_abs_epi32(x[0]);
@@ -56,7 +56,7 @@ RLPC_AVX2 std::uint32_t bits_of(const Vectors<kVectors>& x) {
   return static_cast<std::uint32_t>(all) | static_cast<std::uint32_t>(all >> 32) | 1U;
 }
 
-// round2 of 32-bit numbers that are below 2^31 - 2^(n - 1).
+// Computes round2 of 32-bit numbers below 2^31 - 2^(n - 1).
 RLPC_AVX2 __m256i rounded(__m256i x, int n) {
   const __m256i half = _mm256_set1_epi32(static_cast<std::int32_t>((1U << n) >> 1));
   return _mm256_sra_epi32(_mm256_add_epi32(x, half), _mm_cvtsi32_si128(n));

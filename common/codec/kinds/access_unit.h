@@ -1,4 +1,4 @@
-// One GOF of a stream as parsed: the GOF unit, its slice or frame units, and its hash. Made by
+// Parsed GOF of a stream: the GOF unit, its slice or frame units, and its hash. Made by
 // AccessUnitParser (decoder/codec/parse), inspected by all programs, decoded by make_recon()
 // (decoder/codec/gofs/gof_recon.h).
 #pragma once
@@ -16,7 +16,7 @@
 
 namespace rlpc {
 
-// A GOF of any kind.
+// GOF of any kind.
 using AnyGof = std::variant<ClusterGof, SkinnedGof, InterGof>;
 
 // 6.12 slice_unit( ), 6.14.2 frame_unit( )
@@ -26,12 +26,12 @@ struct SliceEntry {
   std::uint32_t num_trajectories = 0;  // trajectories whose temporal values it contains
   std::uint64_t bytes = 0;             // size of the unit
   std::uint32_t temporal_layer_idx = 0;
-  std::uint32_t frame_idx = 0;   // of a frame unit: its first frame
-  std::uint32_t num_frames = 1;  // likewise
+  std::uint32_t frame_idx = 0;   // first frame of a frame unit
+  std::uint32_t num_frames = 1;  // frames of a frame unit
   bool is_gof_end = false;       // the GOF ends before that frame; the unit has no residuals
 };
 
-// 7.14.2: those of the frames of a GOF that have one; empty if the GOF has none.
+// 7.14.2: frame_crc of each frame of a GOF that has one; empty if none has.
 using FrameCrcs = Vector<std::optional<FrameCrc>>;
 
 struct AccessUnit {

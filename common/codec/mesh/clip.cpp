@@ -7,7 +7,7 @@ namespace {
 
 bool is_continuation(unsigned char byte) { return (byte & 0xC0U) == 0x80U; }
 
-// Bytes of the character at a place; 0: it is none, or a control character.
+// Returns the bytes of the character at a place; 0 if it is invalid or a control character.
 std::size_t character_at(const String& text, std::size_t at) {
   const auto byte = [&](std::size_t i) -> unsigned char {
     return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0U;

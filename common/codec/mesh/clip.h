@@ -17,11 +17,11 @@ struct Clip {
   bool operator==(const Clip&) const = default;
 };
 
-inline constexpr std::uint32_t kMaxClips = 4096;  // in a clip table (R-CLP-01)
+inline constexpr std::uint32_t kMaxClips = 4096;  // per clip table (R-CLP-01)
 inline constexpr std::size_t kMaxClipNameBytes = 256;
 
-// Offset of the first byte that makes a name of a clip wrong: it is not well-formed UTF-8
-// (RFC 3629), or part of a control character; the size of the name if it is right.
+// Returns the offset of the first invalid byte of the name of a clip: not well-formed UTF-8
+// (RFC 3629), or part of a control character; the size of the name if it is valid.
 std::size_t find_clip_name_error(const String& name);
 
 }  // namespace rlpc

@@ -12,7 +12,8 @@
 
 namespace rlpc {
 
-// Join distances go up to 2^(kMaxJoinPrefix + 1) - 1, so that the time of a join is bounded.
+// Largest join prefix. Join distances are at most 2^(kMaxJoinPrefix + 1) - 1, which bounds the
+// time of a join.
 inline constexpr int kMaxJoinPrefix = 9;
 inline constexpr std::uint32_t kMaxJoinDistance = (1U << (kMaxJoinPrefix + 1)) - 1;
 
@@ -25,8 +26,9 @@ struct ConnectivityModels {
   std::array<BitModel, 6> glue_next_flag;
   BitModel far_join_flag;
   BitModel forward_join_flag;
-  std::array<std::array<BitModel, kMaxJoinPrefix>, 2> join_prefix_flag;  // by forward_join_flag
-  std::array<BitModel, kMaxJoinPrefix + 1> join_top_bit;                 // by prefix
+  std::array<std::array<BitModel, kMaxJoinPrefix>, 2>
+      join_prefix_flag;                                   // [forward_join_flag][i]
+  std::array<BitModel, kMaxJoinPrefix + 1> join_top_bit;  // [prefix]
 };
 
 // 8.7.7 SetContexts( ): indices into the arrays of the same names.

@@ -13,7 +13,7 @@ Vector<std::uint32_t> find_edge_mates(std::uint32_t num_vertices,
   const auto is_regular = [](const Triangle& t) {
     return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
   };
-  // The edges of each lower vertex, in two passes.
+  // Groups the edges by their lower vertex, in two passes.
   Vector<std::uint32_t> first(num_vertices + std::size_t{1}, 0);
   for (const Triangle& t : triangles) {
     if (!is_regular(t)) continue;
@@ -28,7 +28,7 @@ Vector<std::uint32_t> find_edge_mates(std::uint32_t num_vertices,
       edges[next[std::min(triangles[t][k], triangles[t][(k + 1) % 3])]++] = 3 * t + k;
     }
   }
-  // Of each higher vertex of the current lower one: its first two edges, and how many.
+  // First two edges, and number of edges, from the current lower vertex to a higher one.
   struct Across {
     std::array<std::uint32_t, 2> edges{};
     std::uint32_t count = 0;

@@ -1,4 +1,4 @@
-// Corners and edges of triangles, and the edges that run along each other (F.1, F.4).
+// Corners and edges of triangles, and pairs of edges of adjacent triangles (F.1, F.4).
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ inline std::uint32_t vertex_of_corner(std::span<const Triangle> triangles, std::
   return triangles[c / 3][c % 3];
 }
 
-// F.4 FindEdgeMates( ): EdgeMate, of each edge the one of another triangle that runs along it
-// in the other direction; kNoCorner: none. Indices of vertices are below num_vertices.
+// F.4 FindEdgeMates( ): returns EdgeMate: for each edge, the opposite edge of another triangle;
+// kNoCorner: none. Indices of vertices are below num_vertices.
 Vector<std::uint32_t> find_edge_mates(std::uint32_t num_vertices,
                                       std::span<const Triangle> triangles);
 

@@ -1,4 +1,4 @@
-// The cut-border machine of clause 8.7: the border between the triangles decoded so far and the
+// Cut-border machine of clause 8.7: the border between the triangles decoded so far and the
 // rest. Parser and writer drive the same machine, so that both see the same states and
 // contexts.
 //
@@ -20,10 +20,10 @@ class CutBorder {
  public:
   explicit CutBorder(std::uint32_t urgent_degree) : urgent_degree_(urgent_degree) {}
 
-  // Makes room for the nodes of so many triangles, if each is a component of its own.
+  // Reserves memory for the nodes of triangles that are each a separate component.
   void reserve(std::uint32_t num_triangles) { nodes_.reserve(3 * std::size_t{num_triangles}); }
 
-  // 8.7.3 SelectGate( ): false if no edge is left, so that a new component has to start.
+  // 8.7.3 SelectGate( ): returns false if no edge is left, so that a new component must start.
   bool select_gate();
 
   // 8.7.4 StartComponent( v0, v1, v2 ): three nodes, for the edges (v0, v2), (v2, v1), (v1,
@@ -38,8 +38,8 @@ class CutBorder {
   Triangle glue_next();                  // requires can_glue_next( )
   Triangle join(std::uint32_t target);   // requires is_join_target( target ); as add_vertex( )
 
-  // 8.7.6 Walk( forward, distance ): the node `distance` steps after the end of the gate, or
-  // before the gate; distance >= 1.
+  // 8.7.6 Walk( forward, distance ): returns the node `distance` steps after the end of the
+  // gate, or before the gate; distance >= 1.
   std::uint32_t walk(bool forward, std::uint32_t distance) const;
   bool is_join_target(std::uint32_t node) const {
     return node < num_nodes() && nodes_[node].alive && node != gate_ && node != next(gate_);
@@ -55,7 +55,7 @@ class CutBorder {
   std::uint32_t previous(std::uint32_t node) const { return nodes_[node].previous; }
   std::uint32_t vertex(std::uint32_t node) const { return nodes_[node].vertex; }
   bool is_boundary(std::uint32_t node) const { return nodes_[node].boundary; }
-  // Number of triangles decoded so far at the vertex of the node.
+  // Returns the number of triangles decoded so far at the vertex of a node.
   std::uint32_t degree(std::uint32_t node) const { return degree_[nodes_[node].vertex]; }
 
  private:
@@ -65,7 +65,7 @@ class CutBorder {
     std::uint32_t previous = 0;
     bool alive = true;
     bool boundary = false;
-    bool urgent = false;  // has been put into urgent_
+    bool urgent = false;  // whether it has been added to urgent_
   };
 
   bool has_length(int n) const;

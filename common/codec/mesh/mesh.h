@@ -10,7 +10,7 @@ namespace rlpc {
 // Three vertex indices; the order gives the orientation.
 using Triangle = std::array<std::uint32_t, 3>;
 
-// A position in grid units, or a displacement.
+// Position in grid units, or displacement.
 using Vec3i = std::array<std::int32_t, 3>;
 
 // Frames per second as a fraction, both parts at least 1.

@@ -17,7 +17,7 @@ enum class Prediction : std::uint8_t { kNone, kParallelogram, kParallelograms, k
 
 class OrderedMesh {
  public:
-  // All must outlive it. `layers` is ignored unless prediction is kLayers; rest_order: null
+  // References must outlive it. layers: ignored unless prediction is kLayers; rest_order: null
   // below the High profile.
   OrderedMesh(Prediction prediction, const Topology& topology, const VertexLayers& layers,
               const RestOrder* rest_order = nullptr);
@@ -34,12 +34,12 @@ class OrderedMesh {
   }
 
   const Topology& topology() const { return topology_; }
-  // 8.18: of the High profile alone.
+  // 8.18: returns the rest order (High profile only).
   const RestOrder& rest_order() const { return *rest_order_; }
 
   std::uint32_t num_layers() const;
   std::uint32_t layer_of(std::uint32_t v) const;
-  // 8.10.1 Vertices of a layer group: of the layers first to end - 1, in the order.
+  // 8.10.1 Vertices of a layer group: returns those of layers first to end - 1, in the order.
   std::span<const std::uint32_t> vertices_of_layers(std::uint32_t first,
                                                     std::uint32_t end) const;
 

@@ -17,7 +17,7 @@ namespace rlpc {
 class OrderedMeshes {
  public:
   // triangles: in decoded order, read during the call. The topology must outlive it.
-  // has_rest_order: of the High profile.
+  // has_rest_order: true in the High profile.
   OrderedMeshes(const Topology& topology, std::span<const Triangle> triangles,
                 bool has_rest_order = true)
       : layers_(make_layers(static_cast<std::uint32_t>(topology.earlier_neighbours.size()),

@@ -12,9 +12,10 @@ namespace rlpc {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
-constexpr std::size_t kMostCounted = 3;  // hinges that make a vertex come earlier
+constexpr std::size_t kMostCounted =
+    3;  // maximum number of hinges that raise the priority of a vertex
 
-// Lists of indices below a limit, in the order of appending.
+// Groups indices into lists, in the order of appending.
 ListOfLists<std::uint32_t> group_indices(
     std::size_t num_lists, const Vector<std::array<std::uint32_t, 4>>& lists_of_index) {
   Vector<std::uint32_t> first(num_lists + 1, 0);
@@ -65,7 +66,7 @@ void RestOrder::find_edges(std::span<const Triangle> triangles) {
       sides[next[std::min(a, b)]++] = {std::max(a, b), t[k], b < a};
     }
   }
-  // Of each higher vertex of the current lower one: its first two sides, and how many it has.
+  // First two sides, and number of sides, from the current lower vertex to a higher one.
   struct Across {
     std::array<std::uint32_t, 2> sides{};
     std::uint32_t count = 0;
@@ -161,7 +162,7 @@ void RestOrder::make_order() {
   hinges_of_vertex_ = {std::move(first_hinge), std::move(hinges)};
 }
 
-// 8.18.2 Order: FindRestRing( v ), of all vertices
+// 8.18.2 Order: FindRestRing( v ), for all vertices
 void RestOrder::make_rings(const Topology& topology) {
   Vector<std::uint32_t> first{0};
   Vector<std::uint32_t> items;

@@ -1,5 +1,5 @@
-// 8.18.1 and 8.18.2: the order in which rest positions are coded in the High profile, and the
-// vertices from which each is predicted. Both follow from connectivity alone.
+// 8.18.1 and 8.18.2: coding order of rest positions in the High profile, and the vertices from
+// which each is predicted. Both follow from connectivity alone.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@
 
 namespace rlpc {
 
-inline constexpr std::size_t kMaxRestHinges = 4;  // of a vertex
+inline constexpr std::size_t kMaxRestHinges = 4;  // per vertex
 inline constexpr std::size_t kMaxRestRing = 2 * kMaxRestHinges;
 
-// Two triangles that share an edge, seen from vertex v: (v, a, b) in its orientation, and that
-// of a, b and c.
+// Two triangles that share an edge, seen from vertex v: (v, a, b) in its orientation, and the
+// triangle of a, b and c.
 struct Hinge {
   std::uint32_t a;
   std::uint32_t b;
   std::uint32_t c;
 };
 
-// The vertex v of a hinge. mirrored: its triangle is (v, b, a).
+// Vertex v of a hinge. mirrored: whether its triangle is (v, b, a).
 struct VertexOfHinge {
   std::uint32_t vertex;
   bool mirrored;
@@ -32,13 +32,13 @@ struct VertexOfHinge {
 
 class RestOrder {
  public:
-  // Both are read during the call only.
+  // Topology and triangles are read only during the call.
   RestOrder(const Topology& topology, std::span<const Triangle> triangles);
 
   std::uint32_t num_vertices() const { return static_cast<std::uint32_t>(place_.size()); }
   std::span<const std::uint32_t> order() const { return order_; }
   std::uint32_t place(std::uint32_t v) const { return place_[v]; }
-  // RestHinges: at most kMaxRestHinges, of vertices that precede v in the order.
+  // RestHinges: at most kMaxRestHinges hinges of vertices that precede v in the order.
   std::span<const Hinge> hinges(std::uint32_t v) const { return hinges_of_vertex_[v]; }
   // RestRing: at most kMaxRestRing vertices that precede v in the order.
   std::span<const std::uint32_t> ring(std::uint32_t v) const { return rings_[v]; }
@@ -51,7 +51,7 @@ class RestOrder {
     std::uint32_t low;
     std::uint32_t high;
     std::array<std::uint32_t, 2> corners;
-    std::array<bool, 2> backward;  // the triangle is (corner, high, low)
+    std::array<bool, 2> backward;  // whether the triangle is (corner, high, low)
 
     Hinge seen_from(std::size_t k) const {
       return backward[k] ? Hinge{high, low, corners[1 - k]} : Hinge{low, high, corners[1 - k]};
@@ -66,9 +66,9 @@ class RestOrder {
   Vector<std::uint32_t> place_;  // [num_vertices]
   ListOfLists<Hinge> hinges_of_vertex_;
   ListOfLists<std::uint32_t> rings_;
-  Vector<Edge> edges_;                // Hinges, by their lower vertex
-  Vector<std::uint32_t> first_edge_;  // [num_vertices + 1], by the lower vertex
-  Vector<std::uint32_t> by_ends_;     // indices into edges_, by both ends
+  Vector<Edge> edges_;                // Hinges, sorted by their lower vertex
+  Vector<std::uint32_t> first_edge_;  // [num_vertices + 1] first edge of a lower vertex
+  Vector<std::uint32_t> by_ends_;     // indices into edges_, sorted by both ends
 };
 
 }  // namespace rlpc

@@ -1,6 +1,6 @@
-// Bones, their influences on vertices and their poses, in the form that writers of skinned
-// meshes need: of skinned GOFs (8.12, 8.13), and of cluster GOFs, whose local coordinate
-// frames (8.4) are bones.
+// Bones, their influences on vertices and their poses, for writers of skinned meshes: from
+// skinned GOFs (8.12, 8.13), and from cluster GOFs, whose local coordinate frames (8.4) become
+// bones.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace rlpc {
 
-// The place of a bone: the images of the x, y and z axes as unit vectors with 30 fractional
-// bits, and its origin, 1/16 grid units.
+// Place of a bone: the images of the x, y and z axes as unit vectors with 30 fractional bits,
+// and its origin, 1/16 grid units.
 struct BonePlace {
   std::array<Vec3l, 3> axes{};
   Vec3l origin{};
@@ -23,33 +23,32 @@ struct BonePlace {
 
 struct SkeletonBone {
   std::int32_t parent = -1;  // index of an earlier bone; -1: none
-  BonePlace bind;            // where it is in the rest shape
+  BonePlace bind;            // place in the rest shape
   bool operator==(const SkeletonBone&) const = default;
 };
 
 struct SkeletonInfluence {
   std::uint16_t bone = 0;
-  std::uint16_t weight = 0;  // above 0; in parts of their sum at the vertex
+  std::uint16_t weight = 0;  // above 0; relative to the sum of weights at the vertex
   bool operator==(const SkeletonInfluence&) const = default;
 };
 
-// The rest shape is not part of it: it follows from the frames and the poses.
+// Bones and influences. Excludes the rest shape, which follows from the frames and the poses.
 struct Skeleton {
   Vector<SkeletonBone> bones;                    // at least one
   Vector<Vector<SkeletonInfluence>> influences;  // [num_vertices], at least one each
-  // Measures of the error that the stream has: the step in which rest positions, or seed
-  // tracks, have been coded, 1/16 grid units; and the number of values that have been coded for
-  // each vertex, besides those of frames.
+  // Measures of the error of the stream: the step of rest positions or seed tracks, 1/16 grid
+  // units; and the number of coded values per vertex, besides those of frames.
   std::uint32_t step = 1;
   std::size_t values_of_vertex = 0;
   bool operator==(const Skeleton&) const = default;
 };
 
-// The bones in one frame.
+// Places of the bones in one frame.
 struct SkeletonPose {
   std::shared_ptr<const Skeleton> skeleton;
   Vector<BonePlace> places;    // [bone]
-  std::size_t num_values = 0;  // that have been coded for the frame
+  std::size_t num_values = 0;  // number of values coded for the frame
 };
 
 }  // namespace rlpc

@@ -22,8 +22,7 @@ ListOfLists<T> group(std::uint32_t num_vertices,
   return {std::move(first), std::move(items)};
 }
 
-// Sorts (vertex, item) pairs: by vertex with a counting sort, then the few items of each
-// vertex.
+// Sorts (vertex, item) pairs by vertex with a counting sort, then the few items of each vertex.
 template <class T>
 void sort_pairs(std::uint32_t num_vertices, Vector<std::pair<std::uint32_t, T>>& pairs) {
   Vector<std::uint32_t> end(num_vertices + 1, 0);
@@ -55,17 +54,17 @@ ListOfLists<std::uint32_t> find_earlier_neighbours(std::uint32_t num_vertices,
   return group(num_vertices, pairs);
 }
 
-// An edge of a triangle: its higher vertex, and the vertex opposite to it.
+// Edge of a triangle: its higher vertex, and the vertex opposite to it.
 struct EdgeOf {
   std::uint32_t high;
   std::uint32_t across;
   auto operator<=>(const EdgeOf&) const = default;
 };
 
-// 8.3.2 Parallelograms: only across edges of exactly two triangles.
+// 8.3.2 Parallelograms: only across edges of exactly two triangles
 ListOfLists<Parallelogram> find_parallelograms(std::uint32_t num_vertices,
                                                std::span<const Triangle> triangles) {
-  Vector<std::pair<std::uint32_t, EdgeOf>> edges;  // by the lower vertex
+  Vector<std::pair<std::uint32_t, EdgeOf>> edges;  // lower vertex, edge
   edges.reserve(triangles.size() * 3);
   for (const Triangle& t : triangles) {
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;

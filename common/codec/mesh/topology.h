@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// A list of lists in two flat arrays.
+// List of lists in two flat arrays.
 template <class T>
 class ListOfLists {
  public:
@@ -27,7 +27,7 @@ class ListOfLists {
   Vector<T> items_;
 };
 
-// a + b - c predicts the vertex; the triangles (v, a, b) and (a, b, c) share an edge.
+// Parallelogram: a + b - c predicts v; the triangles (v, a, b) and (a, b, c) share an edge.
 struct Parallelogram {
   std::uint32_t a;
   std::uint32_t b;
@@ -41,7 +41,7 @@ struct Topology {
   ListOfLists<Parallelogram> parallelograms;
 };
 
-// indices < num_vertices
+// Makes the topology. triangles: indices below num_vertices.
 Topology make_topology(std::uint32_t num_vertices, std::span<const Triangle> triangles);
 
 }  // namespace rlpc

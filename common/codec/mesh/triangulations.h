@@ -1,4 +1,4 @@
-// 8.9.4 Triangulations of a polygon: of the ring of a vertex that is removed from a mesh.
+// 8.9.4 Triangulations of a polygon: the ring of a vertex that is removed from a mesh.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// A set of edges between positions in a ring.
+// Set of edges between positions in a ring.
 using EdgeSet = std::uint64_t;
 
 constexpr EdgeSet edge(std::size_t i, std::size_t j) {
@@ -19,8 +19,8 @@ constexpr EdgeSet edge(std::size_t i, std::size_t j) {
 
 struct Triangulation {
   std::size_t num_triangles = 0;
-  std::array<std::array<std::uint8_t, 3>, kMaxRing - 2> triangles{};  // places in the ring
-  std::array<std::uint8_t, kMaxRing> corners{};                       // triangles at a place
+  std::array<std::array<std::uint8_t, 3>, kMaxRing - 2> triangles{};  // positions in the ring
+  std::array<std::uint8_t, kMaxRing> corners{};  // number of triangles at a position
   EdgeSet edges = 0;
 
   constexpr void add(std::size_t i, std::size_t k, std::size_t j) {
@@ -42,7 +42,8 @@ struct TriangulationList {
   std::array<Triangulation, 42> items{};
 };
 
-// 8.9.4 Triangulations of a polygon: [n] are those of polygons with n corners.
+// 8.9.4 Triangulations of a polygon: returns [n], the triangulations of polygons with n
+// corners.
 constexpr std::array<TriangulationList, kMaxRing + 1> triangulate_all() {
   std::array<TriangulationList, kMaxRing + 1> all{};
   all[2].size = 1;
@@ -64,7 +65,7 @@ constexpr std::array<TriangulationList, kMaxRing + 1> triangulate_all() {
 }
 static_assert(triangulate_all()[6].size == 14 && triangulate_all()[7].size == 42);
 
-// Made when they are first needed: as a constant, they are 13 kB of a decoder.
+// Returns the triangulations, made when they are first needed: a constant takes 13 kB.
 inline const std::array<TriangulationList, kMaxRing + 1>& triangulations() {
   static const std::array<TriangulationList, kMaxRing + 1> kAll = triangulate_all();
   return kAll;

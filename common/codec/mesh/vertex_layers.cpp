@@ -17,16 +17,18 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
 constexpr std::uint32_t kMaxFan = 6;  // triangles around a removable vertex
-// Two vertices with more triangles get no new edge (8.9.5), and one such vertex adds nothing to
-// outer_ring (8.9.6): only the base walks along their triangles.
+// Maximum number of triangles around a vertex for most purposes: two vertices with more get no
+// new edge (8.9.5), and such a vertex adds nothing to outer_ring (8.9.6). Only the base walks
+// along their triangles.
 constexpr std::uint32_t kMaxValence = 12;
 constexpr std::int32_t kGoodValence = 6;
 
 bool are_different(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
 
-// 8.9.2 Rest of the mesh: its triangles. The corners at a vertex form a linked list, so that a
-// triangle is removed in constant time; corner k of triangle i is 3 * i + k. Each corner holds
-// the vertices of the other two corners, so that a walk around a vertex reads nothing else.
+// 8.9.2 Rest of the mesh: its triangles. The corners at a vertex form a linked list, so that
+// removing a triangle takes constant time; corner k of triangle i is 3 * i + k. Each corner
+// holds the vertices of the other two corners, so that a walk around a vertex reads nothing
+// else.
 class Rest {
  public:
   Rest(std::uint32_t num_vertices, std::span<const Triangle> triangles)
@@ -40,10 +42,10 @@ class Rest {
   }
 
   std::uint32_t valence(std::uint32_t v) const { return valence_[v]; }
-  // Iterates over the corners at a vertex; kNone: end.
+  // Iterate over the corners at a vertex; kNone: end.
   std::uint32_t first(std::uint32_t v) const { return first_[v]; }
   std::uint32_t next(std::uint32_t corner) const { return corners_[corner].next; }
-  // The other two vertices of a triangle, in its orientation.
+  // Returns the other two vertices of a triangle, in its orientation.
   const std::array<std::uint32_t, 2>& others(std::uint32_t corner) const {
     return corners_[corner].others;
   }
@@ -84,9 +86,9 @@ class Rest {
   Vector<std::uint32_t> valence_;  // [num_vertices]
 };
 
-// The triangles that the rest of the mesh has had, and the passes that added and removed them,
-// from 1 on. Of the LayeredTriangles, max_layers is the former, and min_layers the latter, or
-// 0, until layers have been counted.
+// All triangles of the rest of the mesh over time, and the passes that added and removed them,
+// from 1 on. Until layers have been counted, max_layers of a LayeredTriangle is the pass that
+// added it, and min_layers the pass that removed it, or 0.
 class History {
  public:
   History(std::span<const Triangle> triangles, LayeredTriangles& all) : all_(all) {
@@ -99,14 +101,14 @@ class History {
     for (std::uint32_t i = 0; i < latest_.size(); ++i) latest_[i] = i;
   }
 
-  // i: of the triangle in Rest.
+  // i: index of the triangle in Rest.
   void add(std::uint32_t i, const Triangle& t, std::uint8_t pass) {
     latest_[i] = static_cast<std::uint32_t>(all_.size());
     all_.push_back({t, 0, pass});
   }
   void take(std::uint32_t i, std::uint8_t pass) { all_[latest_[i]].min_layers = pass; }
 
-  // After p passes, num_layers - p layers are left.
+  // Converts passes to layers: after p passes, num_layers - p layers are left.
   void count_layers(std::uint32_t num_layers) {
     for (LayeredTriangle& t : all_) {
       const std::uint32_t above = t.min_layers == 0 ? 0 : num_layers - t.min_layers;
@@ -117,7 +119,7 @@ class History {
 
  private:
   LayeredTriangles& all_;
-  Vector<std::uint32_t> latest_;  // by index in Rest: index in all_
+  Vector<std::uint32_t> latest_;  // [index in Rest] index in all_
 };
 
 // 8.9.3 Ring of a vertex
@@ -130,8 +132,8 @@ struct Ring {
   std::span<const std::uint32_t> span() const { return std::span(vertices).first(size); }
 };
 
-// The surroundings of a ring: edges that a triangulation must not have (8.9.5), and vertices
-// for outer_ring (8.9.6).
+// Surroundings of a ring: edges that a triangulation must not have (8.9.5), and vertices for
+// outer_ring (8.9.6).
 struct Surroundings {
   EdgeSet barred = 0;
   std::size_t num_vertices = 0;
@@ -158,7 +160,7 @@ class LayerMaker {
   const Triangulation* choose_triangulation(const Ring& ring, EdgeSet barred) const;
   void look_around(std::uint32_t v, const Ring& ring);
   bool remove_vertex(std::uint32_t v);
-  // Inlined, it would slow remove_vertex() down where nothing is noted.
+  // Not inlined, as that would slow down remove_vertex() where nothing is noted.
   [[gnu::noinline]] void note_removal(std::span<const std::uint32_t> taken, const Ring& ring,
                                       const Triangulation& triangulation);
   void set_outer_rings(std::span<const std::uint32_t> removed);
@@ -178,11 +180,11 @@ class LayerMaker {
   // [num_vertices]: 0, except within a function that sets it: place in a fan or
   // a ring plus 1
   Vector<std::uint8_t> place_;
-  Surroundings surroundings_;  // of the current vertex
+  Surroundings surroundings_;  // surroundings of the current vertex
 };
 
 // 8.9.3 Ring of a vertex: FindRing( v ); none if the triangles around v are not a fan, in which
-// each vertex around v starts at most one triangle and ends at most one.
+// each vertex around v starts at most one triangle and ends at most one
 std::optional<Ring> LayerMaker::find_ring(std::uint32_t v) {
   assert(rest_.valence(v) > 0 && rest_.valence(v) <= kMaxFan);
   std::array<std::uint32_t, kMaxFan> starts{};
@@ -198,7 +200,7 @@ std::optional<Ring> LayerMaker::find_ring(std::uint32_t v) {
     is_fan = is_fan && place_[starts[i]] == 0;
     place_[starts[i]] = static_cast<std::uint8_t>(i + 1);
   }
-  // By vertex: 1 + the triangle that starts there; and a bit set of all triangles that do.
+  // [place] 1 + the triangle that starts at the vertex, and the set of all triangles that do.
   std::array<std::uint8_t, kMaxFan> follower{};
   unsigned followers = 0;
   for (std::size_t i = 0; i < size; ++i) {
@@ -230,8 +232,8 @@ std::optional<Ring> LayerMaker::find_ring(std::uint32_t v) {
   return ring;
 }
 
-// [i][place + 1]: the edge between two places in a ring; none from a place to itself, or
-// without a place.
+// Returns [i][place + 1], the edge between two places in a ring; none from a place to itself,
+// or without a place.
 constexpr std::array<std::array<EdgeSet, kMaxRing + 2>, kMaxRing> edges_to_places() {
   std::array<std::array<EdgeSet, kMaxRing + 2>, kMaxRing> edges{};
   for (std::size_t i = 0; i < kMaxRing; ++i) {
@@ -242,7 +244,7 @@ constexpr std::array<std::array<EdgeSet, kMaxRing + 2>, kMaxRing> edges_to_place
   return edges;
 }
 
-// 8.9.5 Choice of a triangulation: the forbidden edges, between vertices that are not
+// 8.9.5 Choice of a triangulation: finds the forbidden edges, between vertices that are not
 // neighbours in the ring but share a triangle of the rest, or that both have many triangles.
 // Also 8.9.6 Removal of a vertex: VerticesAroundRing( v, ring ), here in any order.
 void LayerMaker::look_around(std::uint32_t v, const Ring& ring) {
@@ -340,7 +342,8 @@ bool LayerMaker::remove_vertex(std::uint32_t v) {
   return true;
 }
 
-// taken: the triangles that remove_vertex() has removed, and whose indices the new ones have.
+// Notes a removal. taken: triangles that remove_vertex() has removed, whose indices the new
+// triangles have.
 void LayerMaker::note_removal(std::span<const std::uint32_t> taken, const Ring& ring,
                               const Triangulation& triangulation) {
   for (const std::uint32_t i : taken) history_->take(i, num_passes_);
@@ -367,7 +370,7 @@ void LayerMaker::remove_layer(Vector<std::uint32_t>& rest) {
   set_outer_rings(std::span(removed_).subspan(before));
 }
 
-// 8.9.6 Removal of a vertex: LowerLayersOnly( v, list ): what remains after the pass.
+// 8.9.6 Removal of a vertex: LowerLayersOnly( v, list ), after the pass
 void LayerMaker::set_outer_rings(std::span<const std::uint32_t> removed) {
   std::size_t begin = 0;
   for (std::size_t i = 0; i < removed.size(); ++i) {
@@ -391,7 +394,7 @@ constexpr std::uint32_t max_layers(std::uint32_t num_vertices) {
 }
 static_assert(max_layers(1U << 23) == kMaxLayers);
 
-// 8.9.7 Order of the layers, and base: up to here, layer_of_vertex is the pass.
+// 8.9.7 Order of the layers, and base; until here, layer_of_vertex is the pass.
 void LayerMaker::order_layers(const Vector<std::uint32_t>& base) {
   layers_.num_layers = num_passes_ + 1U;
   assert(layers_.num_layers <= kMaxLayers);  // so that a pass fits into 8 bits

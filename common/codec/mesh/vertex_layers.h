@@ -14,7 +14,7 @@ inline constexpr std::size_t kMaxRing = 7;        // vertices in a ring
 inline constexpr std::size_t kMaxOuterRing = 24;  // vertices in an outer ring
 inline constexpr std::uint32_t kMaxLayers = 212;  // for up to 2^23 vertices
 
-// A short list for each vertex, in one flat array, in the order in which they were set.
+// Short list per vertex, in one flat array, in the order in which lists are set.
 class VertexLists {
  public:
   VertexLists() = default;
@@ -24,7 +24,7 @@ class VertexLists {
     return std::span<const std::uint32_t>(items_).subspan(first_[v], size_[v]);
   }
   std::size_t size() const { return first_.size(); }
-  // At most once per vertex; unset lists are empty. At most 255 items.
+  // Sets a list of at most 255 items, at most once per vertex. Unset lists are empty.
   void set(std::uint32_t v, std::span<const std::uint32_t> items);
 
  private:
@@ -35,28 +35,27 @@ class VertexLists {
 
 struct VertexLayers {
   std::uint32_t num_layers = 1;
-  Vector<std::uint8_t> layer_of_vertex;  // [num_vertices]: 0 is the base, the coarsest
+  Vector<std::uint8_t> layer_of_vertex;  // [num_vertices]; 0 is the base, the coarsest layer
   Vector<std::uint32_t> layer_order;     // all vertices, by layer, then by index
   VertexLists ring;                      // in the order of the walk; in the base: ascending
   VertexLists outer_ring;                // ascending; in the base: empty
 };
 
-// A triangle that is part of the rest of the mesh while that has min_layers to max_layers
-// layers.
+// Triangle of the remaining mesh while that has min_layers to max_layers layers.
 struct LayeredTriangle {
   Triangle vertices{};
   std::uint8_t min_layers = 1;
   std::uint8_t max_layers = 1;
 };
-// RestTriangles of 8.9.2. A removal adds at most five triangles for each by which it reduces
-// the rest of the mesh, so that a mesh of n triangles has at most 6 * n; closed surfaces have
-// at most 3 * n.
+// RestTriangles of 8.9.2. A removal adds at most five triangles per triangle by which it
+// reduces the remaining mesh, so that a mesh of n triangles has at most 6 * n; closed surfaces
+// have at most 3 * n.
 using LayeredTriangles = Vector<LayeredTriangle>;
 
 // 8.9 Vertex layers
 //
 //   num_vertices  at most 2^23
-//   triangles     at most 2^24, of any kind; indices < num_vertices
+//   triangles     at most 2^24, any mesh; indices < num_vertices
 //   all           unless null, receives RestTriangles, in that order
 //
 // The vertices of ring[v] and outer_ring[v] precede v in layer_order, and are in lower layers

@@ -1,4 +1,4 @@
-// 7.11: the settings of a GOF for the weights of prediction along the mesh (8.11).
+// 7.11: settings of a GOF for the weights of prediction along the mesh (8.11).
 #pragma once
 
 #include <cstdint>

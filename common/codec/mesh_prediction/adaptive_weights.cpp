@@ -117,7 +117,7 @@ void VertexAdaptation::adapt_to_rest() {
   }
 }
 
-// 8.15.2 NeighbourOffsets( v, values ), of all factors of the group
+// 8.15.2 NeighbourOffsets( v, values ), for all factors of the group
 void VertexAdaptation::gather(std::span<const std::int32_t> values) {
   const std::size_t count = weights_.count_;
   const std::size_t stride = filter_.stride;

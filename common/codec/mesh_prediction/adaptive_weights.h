@@ -1,5 +1,5 @@
-// 8.15 Adaptive weights: weights of prediction that adapt to the values of a vertex, from one
-// spatial factor to the next.
+// 8.15 Adaptive weights: prediction weights that adapt to the values of a vertex, from spatial
+// factor to spatial factor.
 #pragma once
 
 #include <array>
@@ -14,20 +14,20 @@
 
 namespace rlpc {
 
-// The weights of all vertices. start() begins a pass over the mesh: each vertex, in the order
-// of the mesh or, within a layer above the base, in any order and on any thread, has its values
-// predicted by a VertexAdaptation.
+// Weights of all vertices. start() begins a pass over the mesh, in which a VertexAdaptation
+// predicts the values of each vertex, in the order of the mesh or, within a layer above the
+// base, in any order and on any thread.
 class AdaptiveWeights {
  public:
-  // settings.num_adaptive_factors is at least 1; rest: as of GeometryWeights. Mesh and rest are
-  // kept by reference.
+  // settings.num_adaptive_factors: at least 1; rest: see GeometryWeights. Mesh and rest must
+  // outlive it.
   AdaptiveWeights(const OrderedMesh& mesh, const GeometryWeights& weights,
                   const WeightSettings& settings,
                   const std::array<std::span<const std::int32_t>, 3>& rest);
 
-  // A pass over `count` trajectories, `first` being the number of those before; none of them,
-  // or whole component groups. group_end: ends of the groups of the pass, in trajectories from
-  // its first; kept by reference.
+  // Starts a pass over `count` trajectories, none or whole component groups, after `first`
+  // trajectories of earlier passes. group_end: ends of the groups, in trajectories of the pass;
+  // must outlive the pass.
   void start(std::size_t first, std::size_t count, std::span<const std::size_t> group_end = {});
 
  private:
@@ -39,25 +39,25 @@ class AdaptiveWeights {
   std::size_t num_adaptive_factors_;
   bool is_first_ = true;
   std::size_t count_ = 0;           // trajectories of the pass
-  std::size_t adaptive_count_ = 0;  // of these, adaptive ones
+  std::size_t adaptive_count_ = 0;  // adaptive trajectories of the pass
   std::span<const std::size_t> group_end_;
   Vector<std::uint32_t> first_;   // [num_vertices + 1]
   Vector<std::int32_t> weights_;  // AdaptiveWeights
 };
 
-// Predicts the values of one vertex after the other, factor by factor. One per thread.
+// Predicts the values of vertex after vertex, factor by factor. One object per thread.
 class VertexAdaptation {
  public:
   explicit VertexAdaptation(AdaptiveWeights& weights);
 
-  // values [num_vertices][count], read during the call. False: the weights of this vertex do
-  // not adapt; its values are predicted as of 8.11.
+  // Starts a vertex. values: [num_vertices][count], read during the call. Returns false if the
+  // weights of this vertex do not adapt; its values are then predicted as in 8.11.
   bool start(std::uint32_t v, std::span<const std::int32_t> values);
-  // 8.15.2, for the next factor of the pass.
+  // 8.15.2: predicts the value of the next factor of the pass.
   std::int64_t predict();
-  // Adapts, while factors are adaptive, to the decoded value of the factor.
+  // Adapts to the decoded value of the factor, if the factor is adaptive.
   void add(std::int64_t prediction, std::int32_t value);
-  // After the last factor: keeps the weights.
+  // Keeps the weights, after the last factor.
   void finish();
 
  private:
@@ -71,7 +71,7 @@ class VertexAdaptation {
   std::size_t ring_size_ = 0;
   std::size_t next_ = 0;
   Vector<std::uint32_t> neighbours_;
-  Vector<std::int32_t> mean_;     // [count]: of the ring
+  Vector<std::int32_t> mean_;     // [count] mean of the ring
   Vector<std::int32_t> offsets_;  // [count][stride]
 };
 

@@ -20,7 +20,7 @@ using Moment = std::array<std::int64_t, 6>;  // xx, yy, zz, xy, xz, yz
 constexpr std::array<std::size_t, 6> kMomentRow{0, 1, 2, 0, 0, 1};
 constexpr std::array<std::size_t, 6> kMomentColumn{0, 1, 2, 1, 2, 2};
 
-// 8.11.2 SolveMoment( m ): nothing if the determinant is not positive.
+// 8.11.2 SolveMoment( m ): none if the determinant is not positive.
 std::optional<Vec3l> solve_moment(const Moment& m, const Vec3l& gap) {
   const std::int64_t xx = m[1] * m[2] - m[5] * m[5];
   const std::int64_t yy = m[0] * m[2] - m[4] * m[4];
@@ -39,7 +39,7 @@ std::optional<Vec3l> solve_moment(const Moment& m, const Vec3l& gap) {
   return solution;
 }
 
-// The weights of one vertex.
+// Computes the weights of one vertex.
 class VertexWeights {
  public:
   VertexWeights(const WeightSettings& settings,

@@ -12,15 +12,15 @@ namespace {
 
 constexpr std::size_t kTogether = 1024;  // vertices of a pass
 
-// Round numbers of the format; what others cost is measured on whole files of robot, knight,
-// q-spider, cow and morph-stress at a KG error of 0.1 %, each frame predicted from the one
-// before.
+// Round numbers of the format. The bytes of other values are measured on whole files of robot,
+// knight, q-spider, cow and morph-stress at a KG error of 0.1 %, each frame predicted from the
+// previous one.
 //
-// Below, vertices of the base are candidates. Half: +1.4 % on average, robot +5.2 %; double:
-// -1.1 %, robot -3.8 %, knight up to +0.9 %; four times: worse again.
+// Number of candidates below which vertices of the base are added. Half: +1.4 % on average,
+// robot +5.2 %; double: -1.1 %, robot -3.8 %, knight up to +0.9 %; four times: worse again.
 constexpr std::size_t kFewCandidates = 4;
-// Vertices of the base, which bound the time. Half: robot +0.6 %; double: +2.7 %; the others
-// have smaller bases, or do not need them.
+// Maximum number of vertices of the base, which bounds the time. Half: robot +0.6 %; double:
+// +2.7 %; the others have smaller bases, or do not need them.
 constexpr std::size_t kBaseWindow = 256;
 
 struct NearList {
@@ -74,7 +74,7 @@ class NearSearch {
     vertices_.insert(vertices_.end(), list.begin(), list.end());
   }
 
-  // Removes those of the ring, and repetitions.
+  // Removes vertices of the ring, and repetitions.
   void keep_different(std::span<const std::uint32_t> ring) {
     std::erase_if(vertices_, [&](std::uint32_t u) {
       return std::find(ring.begin(), ring.end(), u) != ring.end();
@@ -83,7 +83,7 @@ class NearSearch {
     vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
   }
 
-  // AddBaseVertices( v ): those before a vertex of the base, or around another.
+  // AddBaseVertices( v ): returns those before a vertex of the base, or around another vertex.
   std::span<const std::uint32_t> base_window(std::uint32_t v) const {
     const auto before = static_cast<std::size_t>(
         std::lower_bound(base_.begin(), base_.end(), v) - base_.begin());

@@ -10,12 +10,12 @@
 
 namespace rlpc {
 
-// 8.18.5 Axes: normal to hinges, along them, and across; unit vectors with 30 fractional bits.
+// 8.18.5 Axes: normal to hinges, along, and across; unit vectors with 30 fractional bits.
 using RestAxes = std::array<Vec3l, 3>;
 
 class RestPrediction {
  public:
-  // values: [num_vertices][3]; those of a vertex are read once vertices after it are predicted.
+  // values: [num_vertices][3]; the values of a vertex are read when later ones are predicted.
   RestPrediction(const RestOrder& order, std::span<const std::int32_t> values, int bits)
       : order_(order), values_(values), bits_(bits) {}
 
@@ -29,8 +29,8 @@ class RestPrediction {
   RestAxes axes(std::span<const Hinge> hinges) const;
   // 8.18.6 Reconstruction: MeanParallelogram( hinges )
   Vec3l base(std::span<const Hinge> hinges) const;
-  // 8.18.6 Reconstruction: PredictFromCounterpart( v, hinges, axes ). own and other correspond
-  // one by one; of_own: the axes of own.
+  // 8.18.6 Reconstruction: PredictFromCounterpart( v, hinges, axes ). own[i] corresponds to
+  // other[i]; of_own: axes of own.
   Vec3l from_counterpart(std::span<const Hinge> own, const RestAxes& of_own,
                          std::span<const Hinge> other, std::uint32_t counterpart,
                          bool mirrored) const;

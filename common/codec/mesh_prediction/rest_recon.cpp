@@ -9,7 +9,7 @@
 namespace rlpc {
 namespace {
 
-// A difference of two rest positions, along any axis.
+// Largest difference of two rest positions along any axis.
 constexpr std::int64_t kMostDifference = std::int64_t{1} << 30;
 
 }  // namespace

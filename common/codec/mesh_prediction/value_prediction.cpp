@@ -8,7 +8,7 @@
 namespace rlpc {
 namespace {
 
-// 8.10.3: the parallelogram with the latest edge.
+// 8.10.3: returns the parallelogram with the latest edge.
 const Parallelogram& latest_of(std::span<const Parallelogram> list) {
   return *std::max_element(list.begin(), list.end(),
                            [](const Parallelogram& p, const Parallelogram& q) {

@@ -1,4 +1,4 @@
-// 8.10.3 Prediction of a value: spatial values of a vertex from those of preceding vertices.
+// 8.10.3 Prediction of a value: predicts spatial values of a vertex from preceding vertices.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // 8.18.4 Counterparts: vertices whose surroundings have nearly the shape of earlier
-// surroundings, possibly mirrored. They follow from connectivity and from what is coded; not
-// from positions.
+// surroundings, possibly mirrored. They follow from connectivity and coded elements, not from
+// positions.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@
 
 namespace rlpc {
 
-// How a vertex is predicted: 9.8.5 has models for each.
+// Prediction of a vertex; 9.8.5 has models for each class.
 enum class RestClass : std::uint8_t { kHinges, kCounterpart, kNoHinge };
 inline constexpr std::size_t kRestClasses = 3;
 
-// A hinge of a vertex, and that of its counterpart; mirrored: a corresponds to b.
+// Hinge of a vertex, and the hinge of its counterpart; mirrored: a corresponds to b.
 struct HingePair {
   Hinge own;
   Hinge other;
@@ -30,7 +30,7 @@ struct HingePairs {
   std::uint32_t counterpart = 0;
 };
 
-// 8.18.4 Counterparts: InheritCounterpart( v ); passed_on( u ) is the counterpart that u passes
+// 8.18.4 Counterparts: InheritCounterpart( v ). passed_on( u ): the counterpart that u passes
 // on.
 template <class PassedOn>
 HingePairs inherited_pairs(const RestOrder& order, std::uint32_t v, PassedOn passed_on) {
@@ -56,7 +56,8 @@ class Counterparts {
   // 8.18.4 Counterparts: InheritCounterpart( v ), for the vertices in their order.
   void start(std::uint32_t v);
   bool is_inherited() const { return pairs_.size > 0; }
-  // Of counterpart_flag: how many vertices of the first pair have counterparts of their own.
+  // Returns the context of counterpart_flag: the number of vertices of the first pair that have
+  // counterparts.
   std::size_t context() const;
   std::size_t num_listed() const { return listed_.size(); }
   HingePairs new_pairs(const Counterpart& choice) const;
@@ -66,12 +67,12 @@ class Counterparts {
   // 8.18.4 Counterparts: EndCounterpart( v, used )
   void finish(bool used);
 
-  // After start() or set_new().
+  // Returns the pairs, after start() or set_new().
   const HingePairs& pairs() const { return pairs_; }
-  // The counterpart that a vertex so far passes on; kNone: none.
+  // Counterpart that a vertex passes on; kNone: none.
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
   std::uint32_t passed_on(std::uint32_t v) const { return counterpart_of_vertex_[v]; }
-  // Of the vertices so far.
+  // Returns the class of one of the vertices so far.
   RestClass class_of(std::uint32_t v) const { return class_of_vertex_[v]; }
 
  private:
@@ -84,7 +85,7 @@ class Counterparts {
   Vector<std::uint32_t> counterpart_of_vertex_;  // [num_vertices]
   Vector<RestClass> class_of_vertex_;            // [num_vertices]
   Vector<Listed> listed_;                        // HingeList
-  // Of the current vertex:
+  // State of the current vertex.
   std::uint32_t v_ = 0;
   HingePairs pairs_;
 };

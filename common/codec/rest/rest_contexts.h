@@ -13,13 +13,13 @@
 
 namespace rlpc {
 
-// 9.8.5: models of the elements of a vertex besides its residuals.
+// 9.8.5: models of the elements of a vertex other than its residuals.
 struct CounterpartModels {
-  std::array<BitModel, 4> counterpart_flag;      // by Counterparts::context( )
-  std::array<BitModel, 2> new_counterpart_flag;  // by whether one was inherited
+  std::array<BitModel, 4> counterpart_flag;      // [Counterparts::context( )]
+  std::array<BitModel, 2> new_counterpart_flag;  // [whether a counterpart was inherited]
 };
 
-// The models of residuals, by RestClass.
+// Models of residuals, [RestClass].
 using RestModels = std::array<ResidualModels, kRestClasses>;
 
 class RestContexts {
@@ -29,8 +29,8 @@ class RestContexts {
     for (auto& of_class : mean_) of_class.fill(256);
   }
 
-  // Call before the residuals of v, once its class is known: that of classes.class_of( v ) for
-  // all vertices before it.
+  // Starts vertex v, whose residuals follow, once its class is known. classes: classes of the
+  // vertices before it.
   void start(std::uint32_t v, RestClass rest_class, const Counterparts& classes) {
     vertex_ = v;
     mean_of_class_ = &mean_[static_cast<std::size_t>(rest_class)];
@@ -52,7 +52,7 @@ class RestContexts {
                               72 * std::uint64_t{latest_mean_};
     return static_cast<std::uint32_t>(sum >> 12);
   }
-  // For estimates: what update() changes besides the magnitudes of the vertex itself.
+  // For estimates: the state that update() changes besides the magnitudes of the vertex.
   using OfCoordinates = std::array<std::uint32_t, kRestFactors>;
   using Means = std::array<OfCoordinates, kRestClasses>;
   const Means& means() const { return mean_; }
@@ -71,7 +71,7 @@ class RestContexts {
   const RestOrder& order_;
   Means mean_{};                                               // RestMean
   Vector<std::array<std::uint8_t, kRestFactors>> magnitudes_;  // [num_vertices]
-  // State of the current vertex:
+  // State of the current vertex.
   std::uint32_t vertex_ = 0;
   OfCoordinates* mean_of_class_ = nullptr;
   OfCoordinates ring_mean_{};

@@ -1,4 +1,4 @@
-// 6.12.4, 8.18: positions of all vertices in an order of their own, as coded.
+// 6.12.4, 8.18: coded positions of all vertices in the rest order.
 #pragma once
 
 #include <cstddef>
@@ -6,14 +6,14 @@
 
 namespace rlpc {
 
-inline constexpr int kRestWeightBits = 6;       // of rest_edge_weight and rest_ring_weight
-inline constexpr std::size_t kRestFactors = 3;  // of a vertex: the coordinates
+inline constexpr int kRestWeightBits = 6;       // rest_edge_weight and rest_ring_weight
+inline constexpr std::size_t kRestFactors = 3;  // coordinates of a vertex
 
-// 6.11 rest_order( ): how rest positions are coded in the High profile, or the first frame of
-// an inter GOF.
+// 6.11 rest_order( ): settings for coding rest positions in the High profile, or the first
+// frame of an inter GOF.
 struct RestSettings {
   bool exact_flag = false;  // RestExact
-  bool order_flag = false;  // in an order of their own; the others are of this order
+  bool order_flag = false;  // coded in the rest order, to which the members below apply
   int edge_weight = 0;      // sixteenths
   int ring_weight = 0;      // sixteenths
   bool axes_flag = false;
@@ -22,10 +22,10 @@ struct RestSettings {
   bool operator==(const RestSettings&) const = default;
 };
 
-// 6.12.4: the counterpart of a vertex, as coded.
+// 6.12.4: coded counterpart of a vertex.
 struct Counterpart {
-  bool flag = false;      // counterpart_flag: the inherited one
-  bool new_flag = false;  // new_counterpart_flag: that of the elements below
+  bool flag = false;      // counterpart_flag: the inherited counterpart
+  bool new_flag = false;  // new_counterpart_flag: the counterpart given by the elements below
   bool mirrored = false;
   std::uint8_t hinge = 0;
   std::uint32_t idx = 0;
@@ -33,7 +33,7 @@ struct Counterpart {
   bool operator==(const Counterpart&) const = default;
 };
 
-// Width of rest positions, including 4 fractional bits.
+// Returns the width of rest positions, including 4 fractional bits.
 constexpr int rest_bits(int position_bits) { return position_bits + 5; }
 
 }  // namespace rlpc

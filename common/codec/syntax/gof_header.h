@@ -1,4 +1,4 @@
-// 6.5 gof( ): the beginning of every kind of GOF.
+// 6.5 gof( ): beginning of every kind of GOF.
 #pragma once
 
 #include <cstdint>
@@ -13,24 +13,24 @@ namespace rlpc {
 enum class GofKind : std::uint8_t {
   kCluster,    // 6.5: clusters in local coordinate frames
   kSkinned,    // 6.11: bones, and trajectories for the residual
-  kSharedRig,  // 6.13.1: the same, with the vertices of a shared rig
+  kSharedRig,  // 6.13.1: bones and trajectories with the vertices of a shared rig
   kInter,      // 6.14: frames predicted from frames
 };
 
-// The name of a kind, for messages: "a cluster GOF".
+// Returns the name of a kind, for messages: "a cluster GOF".
 constexpr const char* kind_name(GofKind kind) {
   if (kind == GofKind::kInter) return "inter";
   return kind == GofKind::kCluster ? "cluster" : "skinned";
 }
 
-// Table 7-1: the type of the units that may follow the GOF unit in its access unit, other than
-// its hash: slice units or frame units. None: there are no such units.
+// Table 7-1: returns the type of the units that may follow the GOF unit in its access unit
+// before its hash: slice units or frame units. None if no units may.
 constexpr std::optional<UnitType> slice_type(GofKind kind) {
   if (kind == GofKind::kCluster) return std::nullopt;
   return kind == GofKind::kInter ? UnitType::kFrame : UnitType::kSlice;
 }
 constexpr bool has_slices(GofKind kind) { return slice_type(kind).has_value(); }
-// 6.1 IsLive( ): whether frames of a GOF are output before it ends.
+// 6.1 IsLive( ): returns whether frames of a GOF are output before it ends.
 constexpr bool is_live(const SequenceHeader& header, GofKind kind) {
   return header.open_end_flag && kind == GofKind::kInter;
 }

@@ -1,4 +1,4 @@
-// 6.3 Sequence header, and the limits of the levels of Annex B.
+// 6.3 Sequence header, and limits of the levels of Annex B.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace rlpc {
 inline constexpr std::uint32_t kProfileBaseline = 0;
 inline constexpr std::uint32_t kProfileMain = 1;
 inline constexpr std::uint32_t kProfileHigh = 2;
-// Table of B.1, by profile_idc.
+// Table of B.1: [profile_idc].
 inline constexpr std::array<const char*, 3> kProfileNames{"Baseline", "Main", "High"};
 
 inline constexpr int kMinPositionBits = 2;
@@ -35,7 +35,7 @@ struct Level {
   std::uint64_t max_gof_factors;        // spatial and temporal values per GOF
   std::uint64_t max_unit_bytes;         // payload of a critical unit
   std::uint64_t max_adaptive_values;    // adaptive factors of a GOF or shared rig x vertices
-  std::uint32_t max_learning_vertices;  // of a mesh whose frames learn weights
+  std::uint32_t max_learning_vertices;  // vertices of a mesh whose frames learn weights
 };
 
 consteval std::uint64_t pow2(int n) { return std::uint64_t{1} << n; }
@@ -55,8 +55,8 @@ struct SequenceHeader {
   std::uint32_t level_idc = 1;
   std::uint32_t num_vertices = 1;
   std::uint32_t num_triangles = 0;
-  bool open_end_flag = false;    // the number of frames is at the end of the stream
-  std::uint32_t num_frames = 1;  // in the header of an open-ended stream: kMaxFrames
+  bool open_end_flag = false;    // whether the number of frames is at the end of the stream
+  std::uint32_t num_frames = 1;  // open-ended stream: kMaxFrames
   FrameRate frame_rate;
   Grid grid;
   int position_bits = 20;

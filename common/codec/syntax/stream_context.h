@@ -1,4 +1,4 @@
-// The data shared by parsing and reconstruction of all GOFs of a stream.
+// Data shared by parsing and reconstruction of all GOFs of a stream.
 #pragma once
 
 #include <optional>
@@ -14,13 +14,13 @@ namespace rlpc {
 struct StreamContext {
   SequenceHeader header;
   Topology topology;
-  std::optional<OrderedMeshes> meshes;  // if the profile has skinned GOFs
+  std::optional<OrderedMeshes> meshes;  // set if the profile has skinned GOFs
 
   StreamContext() = default;
   StreamContext(const StreamContext&) = delete;
   StreamContext& operator=(const StreamContext&) = delete;
 
-  // To be called once the header is set. triangles: in decoded order, read during the call.
+  // Sets the connectivity, after the header. triangles: in decoded order, read during the call.
   void set_connectivity(std::span<const Triangle> triangles) {
     topology = make_topology(header.num_vertices, triangles);
     if (!header.has_skinned_gofs()) return;

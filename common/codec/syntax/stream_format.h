@@ -1,4 +1,4 @@
-// The outer layer of a stream (clauses 6.1 and 6.2): signature, version and unit types.
+// Outer layer of a stream (clauses 6.1 and 6.2): signature, version and unit types.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ inline constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'R',  'L',  'P',
                                                         'C',  0x0D, 0x0A, 0x1A};
 
 inline constexpr std::uint32_t kVersionMajor = 1;
-inline constexpr std::uint32_t kVersionMinor = 2;  // the newest supported
+inline constexpr std::uint32_t kVersionMinor = 2;  // newest supported version
 
 inline constexpr std::size_t kStreamHeaderBytes = 10;  // signature and version
 inline constexpr std::size_t kUnitHeaderBytes = 5;     // ancillary_flag, unit_type, unit_size
@@ -37,12 +37,12 @@ enum class UnitType : std::uint8_t {
   kClipTable = 0x8A,
 };
 
-// Units that belong to the GOF or rig unit before them.
+// Returns whether units of a type belong to the GOF or rig unit before them.
 constexpr bool is_slice_type(UnitType type) {
   return type == UnitType::kSlice || type == UnitType::kFrame;
 }
 
-// 6.2 IsKnownType( type ), of critical units.
+// 6.2 IsKnownType( type ), for critical units.
 constexpr bool is_known_type(UnitType type, std::uint32_t version_minor) {
   constexpr std::array<UnitType, 3> kLast{UnitType::kEndOfSequence, UnitType::kSlice,
                                           UnitType::kFrame};
@@ -50,7 +50,7 @@ constexpr bool is_known_type(UnitType type, std::uint32_t version_minor) {
          type <= kLast[version_minor < 2 ? version_minor : 2];
 }
 
-// Ancillary units that a decoder of this version may read.
+// Returns whether a decoder of this version may read an ancillary unit.
 constexpr bool is_known_ancillary(UnitType type) {
   return type == UnitType::kGofIndex || type == UnitType::kGofHash ||
          type == UnitType::kMetadata || type == UnitType::kClipTable ||
@@ -59,7 +59,7 @@ constexpr bool is_known_ancillary(UnitType type) {
 
 inline constexpr std::uint8_t kAncillaryFlag = 0x80;
 
-// R-STR-03: an unknown minor version, or not that of the profile of the stream.
+// R-STR-03: returns the error of a minor version that is unknown or does not match the profile.
 inline Error unsupported_minor_version() {
   return {Errc::kUnsupported, "R-STR-03", "version_minor", 72};
 }

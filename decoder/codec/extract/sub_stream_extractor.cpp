@@ -12,7 +12,7 @@
 namespace rlpc {
 namespace {
 
-// 8.6.2: hashes of the positions of an access unit, one per frame or one for the GOF.
+// 8.6.2: returns hashes of the positions of an access unit, one per frame or one for the GOF.
 std::vector<std::uint32_t> position_crcs(const AccessUnit& access_unit,
                                          const StreamContext& context, RigRecons& rigs,
                                          bool per_frame) {
@@ -41,7 +41,7 @@ Result<StreamSummary> check_gofs(StreamReader& stream) {
   });
 }
 
-// 7.10: the requirements on metadata that decoding does not check.
+// 7.10: checks requirements on metadata that decoding does not check.
 Result<bool> check_metadata(UnitReader& units, const MemoryLimit& memory) {
   for (std::uint64_t offset = kStreamHeaderBytes; offset < units.size();) {
     const auto unit = units.header_at(offset);
@@ -114,7 +114,7 @@ Result<Bytes> SubStreamExtractor::next() {
   return Bytes{};
 }
 
-// The bytes that replace a unit; empty if it is dropped.
+// Returns the bytes that replace a unit; empty if it is dropped.
 Result<Bytes> SubStreamExtractor::next_unit() {
   const auto unit = stream_->units().header_at(offset_);
   if (!unit) return unit.error();
@@ -159,7 +159,8 @@ Result<Bytes> SubStreamExtractor::attributes(const UnitHeader& unit) {
   return Bytes{};
 }
 
-// In an inter GOF, no frame depends on one of a deeper layer, and the first is in layer 0.
+// In an inter GOF, no frame depends on a frame of a higher temporal layer, and the first frame
+// is in layer 0.
 bool SubStreamExtractor::cuts_first_frame() const {
   if (summary_.gofs.empty()) return false;
   const GofSummary& gof = summary_.gofs.front();
@@ -189,7 +190,7 @@ Result<Bytes> SubStreamExtractor::rig(const UnitHeader& unit) {
   return copy(unit);
 }
 
-// Only where it is allowed, as check_gofs() has checked.
+// Copies or drops a slice. check_gofs() has checked that it may be dropped.
 Result<Bytes> SubStreamExtractor::slice(const UnitHeader& unit) {
   const SliceEntry& entry = open_->summary->slices[open_->num_slices++];
   return open_->groups.have(entry) ? copy(unit) : Bytes{};

@@ -20,12 +20,12 @@
 
 namespace rlpc {
 
-// Writes access units and shared rigs, with new hashes where slices of the GOF or of its
-// rig are dropped, and the GOF index directly before the end of the sequence. Other units are
-// copied in their order, except hash units that follow no GOF (R-HSH-03) and GOF indices
-// elsewhere (R-IDX-04), which are dropped. If no slice is dropped, a conforming stream is
-// copied; only the last index_gof_bytes may grow, to reach the index. Attributes that are
-// predicted from a first frame that the cut changes (R-ATT-08) are dropped.
+// Writes access units and shared rigs, with new hashes where slices of the GOF or its shared
+// rig are dropped, and the GOF index directly before the end of the sequence. Copies other
+// units in their order; drops hash units that follow no GOF (R-HSH-03), GOF indices elsewhere
+// (R-IDX-04), and attributes predicted from a first frame that the cut changes (R-ATT-08). A
+// conforming stream that loses no slice is copied; only its last index_gof_bytes may grow, to
+// reach the index.
 class SubStreamExtractor {
  public:
   // Checks the whole stream, including hashes and metadata: damaged streams yield no
@@ -35,19 +35,20 @@ class SubStreamExtractor {
 
   const SequenceHeader& header() const { return stream_->header(); }
   std::uint32_t num_frames() const { return summary_.num_frames(); }
-  std::uint64_t size() const { return stream_->units().size(); }  // of the input
-  // The GOFs and shared rigs of the input. Cluster GOFs have no slices and are kept whole.
+  std::uint64_t size() const { return stream_->units().size(); }  // bytes of the input
+  // Returns the GOFs and shared rigs of the input. Cluster GOFs have no slices and are kept
+  // whole.
   const StreamSummary& summary() const { return summary_; }
-  // Of a GOF or shared rig.
+  // Returns the totals of a GOF or shared rig within the cut.
   template <class Summary>
   SliceTotals totals_that_stay(const Summary& summary) const {
     return summary.totals(summary.groups_that_stay(cut_));
   }
   bool cuts_any() const;
-  // Whether attributes have been dropped so far.
+  // Returns whether attributes have been dropped so far.
   bool drops_attributes() const { return drops_attributes_; }
 
-  // The next bytes of the output; empty at its end.
+  // Returns the next bytes of the output; empty at its end.
   Result<Bytes> next();
 
  private:
@@ -66,7 +67,7 @@ class SubStreamExtractor {
   Bytes end_of_sequence();
 
   std::unique_ptr<StreamReader> stream_;  // read to its end
-  // Decodes GOFs as they are without the slices that are dropped.
+  // Decodes GOFs without the slices that the cut drops.
   struct CutReader {
     CutReader(StreamReader& stream, const DecoderOptions& options)
         : units(stream.units(), stream.context(), options),
@@ -83,7 +84,7 @@ class SubStreamExtractor {
 
   std::uint64_t offset_ = 0;   // in the input
   std::uint64_t written_ = 0;  // bytes of the output so far
-  // The GOF or shared rig that slices belong to.
+  // GOF or shared rig that the next slices belong to.
   struct OpenUnit {
     UnitHeader unit;
     const SlicedSummary* summary = nullptr;
@@ -92,7 +93,7 @@ class SubStreamExtractor {
     std::size_t num_slices = 0;       // so far
   };
   std::optional<OpenUnit> open_;
-  // So far:
+  // State up to offset_.
   std::size_t num_gofs_ = 0;
   std::size_t num_rigs_ = 0;
   bool has_index_ = false;

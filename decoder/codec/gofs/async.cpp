@@ -1,4 +1,4 @@
-// Exceptions must not leave the thread, which would end the program.
+// Catches exceptions, which would end the program if they left the thread.
 #include "decoder/codec/gofs/async.h"
 
 #include <utility>

@@ -11,16 +11,17 @@ namespace rlpc {
 
 class CoarseOutput {
  public:
-  // triangles: of the whole mesh, in output order; vertex_order: of the stream (8.6.1), empty
-  // if it has none; layers: that stay, at least 1. All are read only during the call.
+  // triangles: the whole mesh, in output order; vertex_order: as in the stream (8.6.1), empty
+  // if it has none; layers: number to keep, at least 1. Spans are read only during the call.
   CoarseOutput(std::uint32_t num_vertices, std::span<const Triangle> triangles,
                std::span<const std::uint32_t> vertex_order, std::uint32_t layers);
 
-  std::uint32_t num_layers() const { return num_layers_; }  // of the whole mesh
-  // Output indices in the whole mesh, ascending.
+  std::uint32_t num_layers() const { return num_layers_; }  // layers of the whole mesh
+  // Returns output indices in the whole mesh, ascending.
   std::span<const std::uint32_t> vertices() const { return vertices_; }
   std::span<const Triangle> triangles() const { return triangles_; }
-  // decoded: all vertices, in decoded order; positions: [vertices().size()][3]
+  // Copies the positions of the coarse mesh. decoded: all vertices, in decoded order;
+  // positions: [vertices().size()][3]
   void pick(std::span<const std::int32_t> decoded, std::span<std::int32_t> positions) const;
 
  private:

@@ -25,7 +25,7 @@ void FrameBand::fill(const GofRecon& recon, std::uint32_t f, std::size_t frame_s
   first_ = first;
   next_count_ = std::min(2 * next_count_, most_);
   positions_.resize(count_ * frame_size);
-  // Without a loop, which would allocate memory.
+  // No loop on threads, which would allocate memory.
   if (count_ <= kBandFrames) return recon.frames(first, count_, positions_);
   for_ranges(count_, kBandFrames, [&](std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;

@@ -13,21 +13,21 @@ namespace rlpc {
 // Frames per thread and pass: factors are read from memory once for all of them.
 inline constexpr std::uint32_t kBandFrames = 4;
 
-// Where frames are taken next, seen from the last one.
+// Direction of the next frame from the last one.
 enum class Direction : std::uint8_t { kForward, kBack, kElsewhere };
 
-// Reconstructs one band per thread, of frames that come next in either direction; elsewhere,
-// starts with a single frame and doubles.
+// Reconstructs one band per thread during playback in either direction; after a jump, starts
+// with a single frame and doubles.
 class FrameBand {
  public:
   explicit FrameBand(std::uint32_t threads)
       : most_(kBandFrames * threads), next_count_(most_) {}
 
-  // Drops the frames held, because another GOF follows.
+  // Drops the frames held: another GOF follows.
   void clear() { count_ = 0; }
-  // Of the next call of frame().
+  // Sets the direction of the next call of frame().
   void turn(Direction direction);
-  // Frame f of the GOF in decoded order, frame_size values; valid until the next call.
+  // Returns frame f of the GOF in decoded order, frame_size values; valid until the next call.
   std::span<const std::int32_t> frame(const GofRecon& recon, std::uint32_t f,
                                       std::size_t frame_size);
 

@@ -1,4 +1,4 @@
-// GOFs that have been decoded from and may be needed again.
+// Cache of GOFs that playback has left and may return to.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace rlpc {
 
-// A GOF of the stream, and how far its hash has been verified.
+// GOF of the stream, and the state of its hash check.
 struct LoadedGof : Owned {
-  std::uint64_t offset = 0;  // of the GOF unit, bytes from the start of the stream
-  std::uint64_t end = 0;     // of its units
+  std::uint64_t offset = 0;  // start of the GOF unit, bytes from the start of the stream
+  std::uint64_t end = 0;     // end of its units
   PreparedGof gof;
   HashCheck hash_check;
 
@@ -24,16 +24,16 @@ struct LoadedGof : Owned {
   }
 };
 
-// Drops those that have not been used for longest.
+// Drops the least recently used GOFs.
 class GofCache {
  public:
-  // max_bytes: of all GOFs, with the shared rigs that they use.
+  // max_bytes: all GOFs, with the shared rigs that they use.
   explicit GofCache(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}
 
   void set_max_bytes(std::uint64_t max_bytes);
-  // May drop it at once. Nothing happens if it is null.
+  // Adds a GOF, unless it is null; may drop it at once.
   void put(std::unique_ptr<LoadedGof> gof);
-  // Removes and returns the GOF that has the frame, or whose unit is at the offset; null if
+  // Remove and return the GOF that has the frame, or whose unit is at the offset; null if
   // there is none.
   std::unique_ptr<LoadedGof> take_frame(std::uint32_t frame);
   std::unique_ptr<LoadedGof> take_at(std::uint64_t offset);
@@ -47,7 +47,7 @@ class GofCache {
   void drop_excess();
 
   std::uint64_t max_bytes_;
-  LinkedList<std::unique_ptr<LoadedGof>> gofs_;  // the last used first
+  LinkedList<std::unique_ptr<LoadedGof>> gofs_;  // most recently used first
 };
 
 }  // namespace rlpc

@@ -26,7 +26,7 @@ Result<bool> LiveGof::begin(const UnitHeader& gof_unit) {
   return true;
 }
 
-// 6.1 access_unit( ): the next frame unit; the GOF ends with the last.
+// 6.1 access_unit( ): reads the next frame unit; the GOF ends with the last one.
 Result<bool> LiveGof::read_unit() {
   const auto more = cursor_->advance({.slice = UnitType::kFrame, .must_go_on = true});
   if (!more) return more;

@@ -1,5 +1,5 @@
-// A GOF of frames of an open-ended stream: each frame is decoded as soon as its frame units are
-// there (8.19.1).
+// Inter GOF of an open-ended stream: decodes each frame as soon as its frame units have arrived
+// (8.19.1).
 #pragma once
 
 #include <cstdint>
@@ -17,25 +17,25 @@ namespace rlpc {
 
 class LiveGof : public Owned {
  public:
-  // Both must outlive it. Frame units outside the cut are dropped.
+  // Stream and cut must outlive it. Frame units outside the cut are dropped.
   LiveGof(StreamReader& stream, const SliceCut& cut);
   LiveGof(const LiveGof&) = delete;
   LiveGof& operator=(const LiveGof&) = delete;
 
-  // Reads the GOF unit, the next unit of the stream. To be called once.
+  // Reads the GOF unit, the next unit of the stream. Must be called once.
   Result<bool> begin(const UnitHeader& gof_unit);
-  // Decodes the next frame in output order; waits for its units, and no longer. False after the
+  // Decodes the next frame in output order; waits only for its units. Returns false after the
   // last frame; the stream has then gone past the GOF.
   Result<bool> next();
 
-  // Of the sequence: that of the frame that next() decodes.
+  // Returns the index in the sequence of the frame that next() decodes.
   std::uint32_t next_frame() const { return first_frame_ + next_output_; }
-  // Whether next() may decode the frame.
+  // Returns whether next() may decode the frame.
   bool may_have(std::uint32_t frame) const {
     return frame >= next_frame() && frame - first_frame_ < parser_.order().num_frames();
   }
-  // The last frame that next() decoded, grid units, in decoded order; and its hash, if it has
-  // one.
+  // Return the last frame that next() decoded, grid units, in decoded order; and its hash, if
+  // it has one.
   std::span<const std::int32_t> positions() const { return frame_.positions; }
   const std::optional<FrameCrc>& frame_crc() const { return frame_.crc; }
   bool is_cut() const { return parser_.is_cut(); }

@@ -24,13 +24,13 @@ void OrderedRecon::make_ready(std::uint32_t f) const {
   go_to(f);
 }
 
-// The reconstruction keeps the first frame, from which independent ones are predicted, up to
+// The reconstruction keeps the first frame, from which independent frames are predicted, up to
 // the last place.
 bool OrderedRecon::can_go_back_to(std::uint32_t place) const {
   return place > 0 && recon_->has_independent_frames() && recon_->place() < num_frames();
 }
 
-// Decodes up to a frame, and drops those long before it.
+// Decodes up to a frame, and drops frames long before it.
 void OrderedRecon::go_to(std::uint32_t frame) const {
   const std::uint32_t first_kept = frame - std::min(frame, num_kept_);
   const std::uint32_t place = order_.place_of(frame);

@@ -14,9 +14,8 @@
 
 namespace rlpc {
 
-// Keeps the last frame, as many before it as keep_frames() says, and those that have been
-// decoded before their turn. An earlier one begins with the GOF again, unless frames are
-// independent.
+// Keeps the last frame, the keep_frames() frames before it, and frames decoded before their
+// turn. Decoding an earlier frame restarts the GOF, unless frames are independent.
 class OrderedRecon final : public GofRecon {
  public:
   // The mesh must outlive it.
@@ -44,7 +43,7 @@ class OrderedRecon final : public GofRecon {
   std::uint32_t num_kept_ = 0;
   mutable std::mutex decoding_;
   mutable std::optional<InterRecon> recon_;
-  // [frame]: positions of the last one asked for, of those kept before it, and of later ones
+  // Positions by frame: the last frame returned, the frames kept before it, and later frames
   // that have been decoded.
   mutable Map<std::uint32_t, Vector<std::int32_t>> decoded_;
 };

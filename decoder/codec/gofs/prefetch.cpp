@@ -17,7 +17,7 @@ bool is_done(const std::future<bool>& done) {
 
 }  // namespace
 
-// The destructor of a future waits.
+// Keeps the future, as its destructor would wait.
 void Prefetch::drop(List& from, List::iterator which) {
   dropped_.splice(dropped_.end(), from, which);
   dropped_.remove_if([](const Ahead& ahead) { return is_done(ahead.done); });
@@ -102,7 +102,7 @@ void Prefetch::ask(const GofPlace& place, std::uint32_t frame) {
   start(asked_.back());
 }
 
-// The units of a GOF, and of the shared rigs that have to be parsed before it.
+// Collects the units of a GOF, and of the shared rigs that must be parsed before it.
 std::optional<Prefetch::Ahead> Prefetch::collect_at(const GofPlace& place) {
   std::uint64_t bytes_left = max_memory_bytes_;
   Ahead ahead;
@@ -141,7 +141,7 @@ void Prefetch::hand_over_rigs() {
   }
 }
 
-// The rigs alive at an offset, as the stream has them.
+// Sets slots_ to the rigs alive at an offset of the stream.
 bool Prefetch::start_slots(std::uint64_t offset) {
   slots_ = {};
   const auto rigs = stream_.rigs().at(offset);
@@ -155,8 +155,8 @@ bool Prefetch::start_slots(std::uint64_t offset) {
   return true;
 }
 
-// Finds the next GOF, past ancillary units and shared rigs. Reads nothing beyond the end of
-// the sequence.
+// Finds the next GOF, past ancillary units and shared rigs. Reads nothing past the end of the
+// sequence.
 std::optional<Prefetch::Ahead> Prefetch::collect(std::uint64_t offset,
                                                  std::uint32_t first_frame) {
   UnitReader& units = stream_.units();

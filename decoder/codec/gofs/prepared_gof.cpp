@@ -8,7 +8,7 @@
 namespace rlpc {
 namespace {
 
-// Residuals are dropped once a GOF is reconstructed; these are the values made from them.
+// Returns the memory of the reconstructed values. Residuals are dropped after reconstruction.
 std::uint64_t memory_of(const ClusterGof& gof, const SequenceHeader& header) {
   constexpr std::uint64_t kBytesPerValue = 8;  // two limbs
   constexpr std::uint64_t kBytesPerComponent = 400;
@@ -18,7 +18,7 @@ std::uint64_t memory_of(const ClusterGof& gof, const SequenceHeader& header) {
                         gof.seed_tracks.size() * gof.num_frames * kBytesPerSeedValue;
   for (const Cluster& cluster : gof.clusters) {
     for (const Component& c : cluster.components) {
-      // Of a cluster, the vertices take whole tiles.
+      // The vertices of a cluster take whole tiles.
       const std::uint64_t spatial = c.spatial_residual.size() + 3 * std::uint64_t{kTileValues};
       bytes += kBytesPerComponent + kBytesPerValue * (c.temporal_residual.size() + spatial);
     }

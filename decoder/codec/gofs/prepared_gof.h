@@ -1,5 +1,4 @@
-// A GOF that is ready to give its frames: its reconstruction, and what its frames are compared
-// with.
+// GOF that is ready to decode frames: its reconstruction and its hashes.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +18,15 @@ struct PreparedGof {
   FrameCrcs frame_crcs;
   bool is_cut = false;
   std::unique_ptr<GofRecon> recon;
-  // That it uses; as long as it is there, so is its reconstruction.
+  // Shared rig in use; keeps its reconstruction alive.
   std::shared_ptr<const SharedRig> rig;
-  // An upper bound of the memory that this keeps, with the frames that it may keep and without
-  // the rig.
+  // Upper bound of the memory in use, with cached frames and without the rig.
   std::uint64_t memory_bytes = 0;
-  std::uint64_t frame_bytes = 0;  // of it, the frames
+  std::uint64_t frame_bytes = 0;  // part of memory_bytes for cached frames
 };
 
-// max_frame_bytes: of decoded frames that an inter GOF keeps for the way back.
+// Prepares a GOF. max_frame_bytes: decoded frames of an inter GOF to cache for backward
+// playback.
 PreparedGof prepare(AccessUnit access_unit, const StreamContext& context, RigRecons& rigs,
                     std::uint64_t max_frame_bytes);
 

@@ -15,10 +15,10 @@ class RigRecons {
  public:
   explicit RigRecons(const StreamContext& context) : context_(context) {}
 
-  // 8.16.1 Decoding a shared rig. Any number of threads may call it; the first makes the
+  // 8.16.1 Decoding a shared rig. Any number of threads may call it; the first one makes the
   // reconstruction, the others wait.
   std::shared_ptr<const RigRecon> of(const std::shared_ptr<const SharedRig>& rig);
-  // Drops those of rigs that nobody else keeps.
+  // Drops the reconstructions of rigs that have no other owner.
   void erase_unused();
 
  private:

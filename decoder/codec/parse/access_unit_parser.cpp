@@ -16,9 +16,9 @@ namespace rlpc {
 class GofParser : public Owned {
  public:
   virtual ~GofParser() = default;
-  // The GOF unit after its header.
+  // Parses the GOF unit after its header.
   virtual Result<bool> gof(BitReader& r, const GofHeader& header, const RigSlots& rigs) = 0;
-  // A slice or frame unit: adds it, without its bytes, unless the cut drops it.
+  // Parses a slice or frame unit, and adds its entry, without bytes, unless the cut drops it.
   virtual Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
                              Vector<SliceEntry>& slices);
   virtual bool drops(BitReader& /*r*/) { return false; }

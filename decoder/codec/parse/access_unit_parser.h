@@ -1,5 +1,5 @@
-// Builds an access unit from its units, one by one. The only place that knows how each
-// kind of GOF is parsed; all readers of streams hand their units to it.
+// Builds an access unit from its units. The only place that knows how each kind of GOF is
+// parsed; all readers of streams hand their units to it.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@
 
 namespace rlpc {
 
-class GofParser;  // of one kind
+class GofParser;  // parser of one kind of GOF
 
-// Every size is checked against the level, and the memory it needs against the limit,
-// before anything is allocated. After an error it can only be destroyed.
+// Checks every size against the level, and the memory it needs against the limit, before
+// allocating. After an error it can only be destroyed.
 class AccessUnitParser {
  public:
   // The context must outlive it, and have its connectivity set. Slices outside the cut are
@@ -28,25 +28,28 @@ class AccessUnitParser {
                    const SliceCut& cut = {});
   ~AccessUnitParser();
 
-  // Each `r` covers exactly the payload of a unit; unit_bytes: of the unit with header and CRC.
+  // In the functions below, `r` covers exactly the payload of a unit; unit_bytes: size of the
+  // unit with header and CRC.
   //
   // 6.5 gof( ), once. first_frame: the first frame that the GOF must have. rigs: the shared
-  // rigs alive.
+  // rigs alive at it.
   Result<bool> gof(BitReader& r, std::uint32_t first_frame, const RigSlots& rigs,
                    std::uint64_t unit_bytes);
-  // The kind of the GOF, once its unit has been parsed.
+  // Returns the kind of the GOF, once its unit has been parsed.
   GofKind kind() const { return kind_; }
-  // Whether the cut drops the slice whose unit begins with `r`, which then need not be parsed.
+  // Returns whether the cut drops the slice whose unit begins with `r`, which then need not be
+  // parsed.
   bool drops(BitReader& r);
-  // 6.12 slice_unit( ) or 6.14.2 frame_unit( ), any number of times. unit_bit_pos: of the unit.
+  // 6.12 slice_unit( ) or 6.14.2 frame_unit( ), any number of times. unit_bit_pos: start of the
+  // unit.
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos, std::uint64_t unit_bytes);
   // 6.7 gof_hash( ), at most once.
   Result<bool> hash(BitReader& r);
 
-  // Estimated memory of what has been parsed so far, and of the shared rigs alive; 0 before
-  // the GOF unit.
+  // Returns the estimated memory of what has been parsed so far, and of the shared rigs alive;
+  // 0 before the GOF unit.
   std::uint64_t memory_bytes() const;
-  // After the last unit.
+  // Returns the access unit, after the last unit.
   AccessUnit finish();
 
  private:

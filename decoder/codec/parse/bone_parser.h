@@ -15,8 +15,8 @@
 
 namespace rlpc {
 
-// The models and running means start afresh with each object: in a bone section, a track
-// section, and in the slice of component group 0 of a temporal layer (9.8.1).
+// Models and running means are initialised by each object: in a bone section, a track section,
+// and the slice of component group 0 of a temporal layer (9.8.1).
 class BoneParser {
  public:
   BoneParser(SectionReader& section, const SequenceHeader& header, const SkinnedGof& gof)
@@ -62,7 +62,7 @@ class BoneParser {
     }
   }
 
-  // After each bone.
+  // Checks the section after each bone.
   void check_overrun(bool has_tracks = true) {
     section_.check_overrun(has_tracks ? "origin_residual" : "origin_flag");
   }

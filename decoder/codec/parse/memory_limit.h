@@ -1,4 +1,4 @@
-// The memory that the caller allows (DecodeLimits).
+// Memory limit of the caller (DecodeLimits).
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@ namespace rlpc {
 
 struct MemoryLimit {
   std::uint64_t max_bytes = 0;
-  std::uint64_t bytes_in_use = 0;  // by others, while something is read or parsed
+  std::uint64_t bytes_in_use = 0;  // memory of the rest of the decoder
 };
 
 }  // namespace rlpc

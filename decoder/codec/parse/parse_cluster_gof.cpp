@@ -13,12 +13,12 @@
 namespace rlpc {
 namespace {
 
-// Bytes per value of a seed track: as a residual, and as a position.
+// Bytes per value of a seed track: the residual, and the position.
 constexpr std::uint64_t kBytesPerTrackValue = 14;
 
-// Memory for the components of a cluster: the residuals, and the factors laid out for
-// reconstruction (ComponentSum): spatial ones in tiles and with two limbs, temporal ones with
-// those two for each of them, in vectors whose capacity may be twice their size.
+// Memory of the components of a cluster: residuals, and factors laid out for reconstruction
+// (ComponentSum): spatial factors in tiles with two limbs, temporal factors with two limbs for
+// each of these, in vectors whose capacity may be twice their size.
 constexpr std::uint64_t kBytesPerComponent = 500;
 constexpr std::uint64_t kBytesPerResidual = 4;
 constexpr std::uint64_t kBytesPerTemporalFactor = 4 + 16;  // before and after it is laid out
@@ -31,7 +31,7 @@ std::uint64_t component_memory(std::uint64_t num_components, std::uint64_t num_v
                            kBytesPerTemporalFactor * num_frames + kBytesPerTile * tiles);
 }
 
-// The range-coder section of a GOF. Sticky: after the first failure nothing more is read.
+// Parses the range-coder section of a GOF. Errors are sticky: nothing is read after the first.
 class ClusterSectionParser {
  public:
   ClusterSectionParser(BitReader& r, const SequenceHeader& header, const Topology& topology,
@@ -62,7 +62,7 @@ class ClusterSectionParser {
   ClusterGof& gof_;
   MemoryLimit memory_;
   ClusterModels models_;
-  Vector<std::size_t> coded_vertices_;  // of each cluster
+  Vector<std::size_t> coded_vertices_;  // [cluster] number of coded vertices
   std::uint64_t num_factors_ = 0;
   std::uint64_t memory_bytes_ = 0;
   Vector<std::uint32_t> frame_mean_;

@@ -13,9 +13,8 @@
 
 namespace rlpc {
 
-// 6.5 clusters_of_gof( ): the rest of the payload, to which `r` ends. Every size is checked
-// against the level, and the memory of its factors against the limit, before anything is
-// allocated.
+// 6.5 clusters_of_gof( ): the rest of the payload, where `r` ends. Checks every size against
+// the level, and the memory of the factors against the limit, before allocating.
 Result<ClusterGof> parse_clusters(BitReader& r, const SequenceHeader& header,
                                   const Topology& topology, const GofHeader& gof_header,
                                   const MemoryLimit& memory);

@@ -10,8 +10,8 @@
 
 namespace rlpc {
 
-// A field of a header, coded relative to its previous value. `models`: of all fields, with
-// `mean`.
+// Parses a field of a header, coded relative to its previous value. `models` and `mean` are
+// shared by all fields.
 inline int parse_header_field(SectionReader& section, ResidualModels& models,
                               std::array<std::uint32_t, 4>& mean, HeaderField field,
                               int previous, Range range, const char* element,

@@ -54,8 +54,9 @@ class ExplicitPattern {
 
   BitReader& r_;
   std::uint32_t period_;
-  std::uint64_t depth_pos_ = 0;                                // of the last pattern_depth
-  std::array<std::optional<std::uint32_t>, 1 << 6> depth_at_;  // DepthAtOffset; none: not yet
+  std::uint64_t depth_pos_ = 0;  // place of the last pattern_depth
+  std::array<std::optional<std::uint32_t>, 1 << 6>
+      depth_at_;  // DepthAtOffset; none: not set yet
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 namespace rlpc {
 
-// Errors are left in `r`.
+// 6.14.1 frame_pattern( ). Errors are left in `r`.
 FramePattern parse_frame_pattern(BitReader& r);
 
 }  // namespace rlpc

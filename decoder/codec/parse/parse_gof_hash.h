@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// num_frames: of the GOF that the unit belongs to.
+// 6.7 gof_hash( ). num_frames: frames of the GOF that the unit belongs to.
 Result<GofHash> parse_gof_hash(BitReader& r, std::uint32_t num_frames);
 
 }  // namespace rlpc

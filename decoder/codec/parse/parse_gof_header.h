@@ -9,11 +9,12 @@
 
 namespace rlpc {
 
-// The first element of a GOF unit, which says after damage where decoding goes on. Errors are
+// Parses the first element of a GOF unit, with which decoding resumes after damage. Errors are
 // left in `r`.
 std::uint32_t parse_first_frame(BitReader& r, Range range);
 
-// expected_first_frame: below num_frames of the sequence. Errors are left in `r`.
+// Parses the header. expected_first_frame: below num_frames of the sequence. Errors are left in
+// `r`.
 GofHeader parse_gof_header(BitReader& r, const SequenceHeader& header,
                            std::uint32_t expected_first_frame);
 

@@ -24,7 +24,7 @@ bool InterGofParser::has_memory(BitReader& r, std::uint64_t more, const char* st
   return false;
 }
 
-// 6.14 frames_of_gof( ), the settings of its weights
+// 6.14 frames_of_gof( ): the settings of weights
 void InterGofParser::weights(BitReader& r) {
   gof_.weights.damping_log2 = static_cast<int>(r.u(4, "damping_log2"));
   gof_.weights.outer_weight = static_cast<int>(r.u(4, "outer_weight"));
@@ -239,7 +239,7 @@ bool InterGofParser::frame_start(BitReader& r, const SliceEntry& unit, std::uint
     frame.layer_groups = unit.layer_group_idx + 1;
     return true;
   }
-  // It has the same layer groups.
+  // A repetition has the same layer groups.
   frame.layer_groups = frames_[*frame.repeated].layer_groups;
   for (std::uint32_t j = 0; j < frame.layer_groups; ++j) ++frames_of_group[j];
   return false;
@@ -286,14 +286,14 @@ InterFrame InterGofParser::take_frame(std::uint32_t frame) {
 
 namespace {
 
-// One vertex, for SectionReader::residuals().
+// Context of one vertex, for SectionReader::residuals().
 struct OfVertex {
   InterContexts& contexts;
   std::uint32_t expected() const { return contexts.expected(); }
   ResidualModels& models() const { return contexts.models(); }
   void update(std::int32_t residual) const { contexts.update(residual); }
 };
-// The motion of one patch.
+// Context of the motion of one patch.
 struct OfPatch {
   PatchContexts& contexts;
   std::size_t value = 0;

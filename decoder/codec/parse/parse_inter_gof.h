@@ -21,43 +21,45 @@
 
 namespace rlpc {
 
-// 6.14.2 frame_unit( ), its beginning.
+// Beginning of 6.14.2 frame_unit( ).
 struct FrameUnitStart {
   std::uint32_t frame_idx = 0;
   bool gof_end_flag = false;
 };
-// num_frames: of the GOF. Errors are left in `r`.
+// Parses the beginning of a frame unit. num_frames: frames of the GOF. Errors are left in `r`.
 FrameUnitStart parse_frame_unit_start(BitReader& r, const SequenceHeader& header,
                                       std::uint32_t num_frames);
 
-// A GOF unit and the frame units after it, one by one. Every size is checked against the level,
-// and the memory it needs against the limit, before anything is allocated. Layer groups outside
-// the cut are treated as absent.
+// Parses a GOF unit and the frame units after it. Checks every size against the level, and the
+// memory it needs against the limit, before allocating. Layer groups outside the cut are
+// treated as absent.
 class InterGofParser {
  public:
-  // The mesh must have layers. All must outlive it. memory.bytes_in_use: by all others.
+  // The mesh must have layers. The references must outlive it. memory.bytes_in_use: memory of
+  // the rest of the decoder.
   InterGofParser(const SequenceHeader& header, const OrderedMesh& mesh,
                  const MemoryLimit& memory, const SliceCut& cut = {})
       : header_(header), mesh_(mesh), memory_(memory), cut_(cut) {}
 
-  // 6.14 frames_of_gof( ): the rest of the payload of a GOF unit, to which `r` ends.
+  // 6.14 frames_of_gof( ): the rest of the payload of a GOF unit, where `r` ends.
   Result<bool> gof(BitReader& r, const GofHeader& gof_header);
-  // 6.14.2 frame_unit( ). unit_bit_pos: of the unit.
+  // 6.14.2 frame_unit( ). unit_bit_pos: start of the unit.
   Result<bool> frame(BitReader& r, std::uint64_t unit_bit_pos);
   InterGof finish();
 
-  // Of the settings in the GOF unit, and with the number of frames that is known so far.
+  // Return the settings of the GOF unit, and the order of the frames known so far.
   const InterSettings& settings() const { return gof_; }
   const FrameOrder& order() const { return *order_; }
-  // Places whose frames have all their frame units: 8.19.1 DecodeCompleteFrames( ).
+  // Returns the number of leading places whose frames have all their frame units: 8.19.1
+  // DecodeCompleteFrames( ).
   std::uint32_t complete_places() const;
-  // Hands over a frame that is complete.
+  // Hands over a complete frame.
   InterFrame take_frame(std::uint32_t frame);
 
-  // The unit that the last frame() parsed; none if the cut drops it.
+  // Returns the unit that the last frame() parsed; none if the cut drops it.
   const std::optional<SliceEntry>& last_unit() const { return last_unit_; }
   bool is_cut() const { return is_cut_; }
-  // Estimated memory of what has been parsed so far.
+  // Returns the estimated memory of what has been parsed so far.
   std::uint64_t memory_bytes() const { return memory_bytes_; }
 
  private:
@@ -65,10 +67,10 @@ class InterGofParser {
   void patch_map(BitReader& r);
   void end_gof(BitReader& r, std::uint32_t num_frames, std::uint64_t unit_bit_pos);
   void frames_of_group(BitReader& r, SliceEntry& unit, std::uint64_t unit_bit_pos);
-  // Places of the frames of a unit; fewer than it claims if there are no more.
+  // Returns the places of the frames of a unit; fewer than it declares if the GOF has fewer.
   Vector<std::uint32_t> unit_places(const SliceEntry& unit) const;
   bool may_follow(const SliceEntry& unit, std::span<const std::uint32_t> places);
-  // False: the frame repeats another.
+  // Returns false if the frame repeats another.
   bool frame_start(BitReader& r, const SliceEntry& unit, std::uint32_t place);
   void earlier_frame(BitReader& r, std::uint32_t place);
   void patch_motions(SectionReader& section, InterFrame& frame);
@@ -86,19 +88,19 @@ class InterGofParser {
   InterGof gof_;  // without its frames
   Vector<InterFrame> frames_;
   std::optional<InterContexts> contexts_;
-  std::optional<PatchContexts> patch_contexts_;  // if there are patches
+  std::optional<PatchContexts> patch_contexts_;  // none: no patches
   std::optional<FrameOrder> order_;
   std::uint32_t next_place_ = 0;  // LastPlace + 1
-  // Of each temporal layer: how far its frame units have got.
+  // Progress of the frame units of a temporal layer.
   struct LayerPlace {
     std::uint32_t next = 0;        // LastPlaceOfLayer + 1
     Vector<std::uint32_t> before;  // [temporal layer]: frames before next - 1
   };
   Vector<LayerPlace> layer_places_;
-  // [temporal layer][layer group]: frames that have the layer group.
+  // [temporal layer][layer group] number of frames that have the layer group.
   Vector<Vector<std::uint32_t>> frames_of_group_;
-  std::uint32_t end_layer_group_ = 0;     // of those that the cut keeps
-  std::uint32_t end_temporal_layer_ = 0;  // likewise
+  std::uint32_t end_layer_group_ = 0;     // first layer group that the cut drops
+  std::uint32_t end_temporal_layer_ = 0;  // first temporal layer that the cut drops
   bool is_cut_ = false;
   std::optional<SliceEntry> last_unit_;
   std::uint64_t memory_bytes_ = 0;

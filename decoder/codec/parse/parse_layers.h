@@ -1,4 +1,4 @@
-// 6.11 layer_groups( ) and layer_steps( ): the layers of a rig, or of an inter GOF.
+// 6.11 layer_groups( ) and layer_steps( ): the layers of a rig or inter GOF.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace rlpc {
 
-// Layers of each group; the groups have all layers together. Empty after an error.
+// Returns the number of layers of each group, which together have all layers; empty after an
+// error.
 inline Vector<std::uint32_t> parse_layer_groups(BitReader& r, std::uint32_t num_layers) {
   const std::uint32_t num_groups =
       r.ue("num_layer_groups_minus1", {0, std::int64_t{num_layers} - 1}, "R-BON-03") + 1;

@@ -10,8 +10,8 @@
 namespace rlpc {
 namespace {
 
-// 6.12.4 Rest residuals of a vertex: counterpart( v ). Whether there is one; after an error,
-// no.
+// 6.12.4 Rest residuals of a vertex: counterpart( v ). Returns whether v has a counterpart;
+// false after an error.
 bool parse_counterpart(SectionReader& section, std::size_t num_hinges,
                        CounterpartModels& models, Counterparts& counterparts,
                        Counterpart& choice) {

@@ -14,8 +14,8 @@ namespace rlpc {
 // 6.11 rest_order( exact )
 RestSettings parse_rest_settings(BitReader& r, bool exact);
 
-// rest_residuals( v ) of all vertices, in their order: residuals, [num_vertices][3], and
-// choices of counterparts, [num_vertices], or empty if there are none. Errors are left in the
+// Parses rest_residuals( v ) of all vertices, in their order. residuals: [num_vertices][3];
+// choices: counterparts [num_vertices], or empty if there are none. Errors are left in the
 // section.
 void parse_rest_residuals(SectionReader& section, const RestOrder& order,
                           std::span<std::int32_t> residuals, std::span<Counterpart> choices);

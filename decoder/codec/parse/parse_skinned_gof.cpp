@@ -50,7 +50,7 @@ void SkinnedGofParser::layers(BitReader& r) {
   parse_layer_steps(r, gof_.layer_step);
 }
 
-// NumFactors, and the memory.
+// Checks NumFactors and the memory.
 void SkinnedGofParser::count_factors(SectionReader& section, const Factors& factors,
                                      const char* element) {
   num_factors_ += factors.spatial * header_.num_vertices + factors.of_tracks;
@@ -123,7 +123,7 @@ void SkinnedGofParser::rig_header(BitReader& r) {
   if (!r.error()) gof_.bones.resize(num_bones);
 }
 
-// The part of a skinned GOF or shared rig that begins with rig_header( ).
+// Parses the part of a skinned GOF or shared rig that begins with rig_header( ).
 Result<bool> SkinnedGofParser::rig(BitReader& r) {
   rig_header(r);
   r.byte_alignment();
@@ -177,7 +177,7 @@ Result<bool> SkinnedGofParser::rig(BitReader& r, const RigSlots& rigs) {
   unit_ = Unit::kRig;
   gof_.rig_idx = parse_rig_idx(r);
   num_factors_ = rigs.num_factors(gof_.rig_idx);
-  memory_bytes_ = memory_of_rigs(rigs);  // with the one that it replaces
+  memory_bytes_ = memory_of_rigs(rigs);  // including the rig that it replaces
   return rig(r);
 }
 
@@ -257,13 +257,13 @@ bool SkinnedGofParser::may_follow(const SliceEntry& slice) const {
   return group == 0 || gof_.slice_layers[group - 1] > layers;
 }
 
-// TemporalLayers[ group ] of 8.14.1.
+// 8.14.1: TemporalLayers[ group ]
 std::uint32_t SkinnedGofParser::temporal_layers(std::uint32_t group) const {
   const bool has_first = group == 0 || gof_.slice_layers[group] > 0;
   return has_first ? 1 + gof_.temporal_layers[group] : 0;
 }
 
-// 6.12 slice_unit( ), to its section
+// 6.12 slice_unit( ), up to its section
 SliceEntry SkinnedGofParser::slice_header(BitReader& r) const {
   SliceEntry slice;
   if (gof_.num_temporal_layers > 1) {

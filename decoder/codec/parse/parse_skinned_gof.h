@@ -22,21 +22,21 @@ namespace rlpc {
 
 class SectionReader;
 
-// Of a rig unit, or of a skinned GOF with a shared rig.
+// Parses rig_idx of a rig unit, or of a skinned GOF with a shared rig.
 std::uint32_t parse_rig_idx(BitReader& r);
 
-// The unit of a skinned GOF or shared rig and the slice units after it, one by one. Every
-// size is checked against the level, and the memory it needs against the limit, before
-// anything is allocated. Slices outside the cut are treated as absent.
+// Parses the unit of a skinned GOF or shared rig and the slice units after it. Checks every
+// size against the level, and the memory it needs against the limit, before allocating. Slices
+// outside the cut are treated as absent.
 class SkinnedGofParser {
  public:
-  // All must outlive it.
+  // The references must outlive it.
   SkinnedGofParser(const SequenceHeader& header, const OrderedMeshes& meshes,
                    const MemoryLimit& memory, const SliceCut& cut = {})
       : header_(header), meshes_(meshes), memory_(memory), cut_(cut) {}
 
-  // One of these three begins: the rest of the payload of a unit, to which `r` ends. models:
-  // those alive.
+  // Parse the rest of the payload of a unit, where `r` ends; one of them must be called first.
+  // rigs: the shared rigs alive at the unit.
   //
   // 6.11 bones_of_gof( )
   Result<bool> bones(BitReader& r, const GofHeader& gof_header, const RigSlots& rigs = {});
@@ -45,21 +45,22 @@ class SkinnedGofParser {
   // 6.13 rig( )
   Result<bool> rig(BitReader& r, const RigSlots& rigs);
 
-  // Whether the cut drops the slice whose unit begins with `r`, which then need not be parsed.
+  // Returns whether the cut drops the slice whose unit begins with `r`, which then need not be
+  // parsed.
   bool drops(BitReader& r);
-  // 6.12 slice_unit( ). unit_bit_pos: of the slice unit.
+  // 6.12 slice_unit( ). unit_bit_pos: start of the slice unit.
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos);
 
-  // After the last slice, of a GOF or of a shared rig.
+  // Return the GOF or the shared rig, after the last slice.
   SkinnedGof finish() { return std::move(gof_); }
   std::shared_ptr<const SharedRig> finish_rig();
   std::uint32_t rig_idx() const { return gof_.rig_idx; }
 
-  // The slice that the last slice() parsed; none if the cut drops it.
+  // Returns the slice that the last slice() parsed; none if the cut drops it.
   const std::optional<SliceEntry>& last_slice() const { return last_slice_; }
-  // Whether a slice has been dropped so far.
+  // Returns whether a slice has been dropped so far.
   bool is_cut() const { return gof_.is_cut; }
-  // Estimated memory of what has been parsed so far, and of the shared rigs alive.
+  // Returns the estimated memory of what has been parsed so far, and of the shared rigs alive.
   std::uint64_t memory_bytes() const { return memory_bytes_; }
 
  private:
@@ -74,8 +75,8 @@ class SkinnedGofParser {
   void load_rig();
   void bone_section(BitReader& r);
   void track_section(BitReader& r);
-  // Before a section is parsed that adds to them: counts spatial factors of all vertices,
-  // values of tracks, and the memory for both.
+  // Counts the spatial factors of all vertices, the values of tracks, and the memory for both,
+  // before a section is parsed that adds to them.
   struct Factors {
     std::uint64_t spatial = 0;
     std::uint64_t of_tracks = 0;
@@ -84,16 +85,16 @@ class SkinnedGofParser {
     return 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames;
   }
   void count_factors(SectionReader& section, const Factors& factors, const char* element);
-  // Whether slices of the group have tracks and no vertices: those are in the shared rig.
+  // Returns whether slices of the group have only tracks: the shared rig has the vertices.
   bool has_only_tracks(std::uint32_t group) const {
     return unit_ == Unit::kTracks && group <= gof_.num_component_groups;
   }
-  // The trajectories of a component group of the GOF or of its shared rig, from 1 on.
+  // Returns the trajectories of a component group, from 1 on, of the GOF or its shared rig.
   FactorGroup tracks_of(std::uint32_t group) const {
     return has_only_tracks(group) ? factor_group(*gof_.rig, group)
                                   : factor_group(gof_, own_group(group));
   }
-  // Index of a component group among those that have vertices here.
+  // Returns the index of a component group among those with vertices in this GOF.
   std::size_t own_group(std::uint32_t group) const {
     return unit_ == Unit::kTracks ? group - gof_.num_component_groups : group;
   }
@@ -110,7 +111,7 @@ class SkinnedGofParser {
   SkinnedGof gof_;  // or shared rig
   std::uint64_t num_factors_ = 0;
   std::uint64_t memory_bytes_ = 0;
-  // From slice to slice (9.8.1).
+  // State that slices inherit from the previous one (9.8.1).
   struct SliceState {
     void start(std::uint32_t num_frames, std::uint32_t first_group);
 
@@ -120,12 +121,12 @@ class SkinnedGofParser {
     Vector<std::uint32_t> trajectory_mean;
     std::shared_ptr<VertexModels> vertex_models;
     std::shared_ptr<VertexModels> models_of_group;
-    std::optional<VertexContexts> contexts;  // of the current group
+    std::optional<VertexContexts> contexts;  // contexts of the current group
     std::uint32_t last_group = 0;
     std::uint32_t last_temporal_layer = 0;
   };
   SliceState state_;
-  // Groups from these on are dropped.
+  // First groups and layers that the cut drops.
   struct CutGroups {
     std::uint32_t end_component_group = 0;
     std::uint32_t end_layer_group = 0;

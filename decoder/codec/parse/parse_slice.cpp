@@ -49,7 +49,8 @@ void SkinnedGofParser::SliceParser::group_components() {
   }
 }
 
-// Of `count` trajectories; spatial: their spatial factors, 0 if they are in the shared rig.
+// Counts the factors of `count` trajectories. spatial: number of spatial factors, 0 if they are
+// in the shared rig.
 void SkinnedGofParser::SliceParser::count_factors(std::uint64_t count, std::uint64_t spatial,
                                                   const char* element) {
   parser_.memory_bytes_ += memory_of_trajectories(count);

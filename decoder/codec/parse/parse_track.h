@@ -12,9 +12,9 @@
 
 namespace rlpc {
 
-// frame_mean [num_gof_frames]: running means, kept from track to track. models: of level 0,
-// and of the others if `order` has any. residuals [num_gof_frames]: set at the places of
-// `order`.
+// Parses the residuals of a track. frame_mean [num_gof_frames]: running means, kept from track
+// to track. models: of level 0, and of the other levels if `order` has any. residuals
+// [num_gof_frames]: set at the places of `order`.
 inline void parse_track(SectionReader& section, std::span<ResidualModels> models,
                         std::span<std::uint32_t> frame_mean, std::span<const TrackPlace> order,
                         std::span<Vec3i> residuals, const char* element) {

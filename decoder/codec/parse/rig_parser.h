@@ -1,4 +1,4 @@
-// Builds a shared rig from its units, one by one (6.13).
+// Builds a shared rig from its units (6.13).
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace rlpc {
 
-// A shared rig of a stream as parsed: its unit and its slice units.
+// Parsed shared rig: its unit and its slice units.
 struct ParsedRig {
   std::uint32_t rig_idx = 0;
   std::shared_ptr<const SharedRig> rig;
@@ -24,7 +24,7 @@ struct ParsedRig {
   std::uint64_t bytes = 0;    // size of its unit
 };
 
-// Limits are checked as by AccessUnitParser. After an error it can only be destroyed.
+// Checks limits as AccessUnitParser does. After an error it can only be destroyed.
 class RigParser {
  public:
   // The context must outlive it, and have its connectivity set. Slices outside the cut are
@@ -32,7 +32,7 @@ class RigParser {
   RigParser(const StreamContext& context, const MemoryLimit& memory, const SliceCut& cut = {})
       : parser_(context.header, *context.meshes, memory, cut) {}
 
-  // As for AccessUnitParser. rigs: those alive before it.
+  // 6.13 rig( ), once; then slices as in AccessUnitParser. rigs: the rigs alive before it.
   Result<bool> rig(BitReader& r, const RigSlots& rigs, std::uint64_t unit_bytes) {
     if (auto ok = parser_.rig(r, rigs); !ok) return ok;
     parsed_.bytes = unit_bytes;
@@ -46,9 +46,9 @@ class RigParser {
     parsed_.slices.back().bytes = unit_bytes;
     return true;
   }
-  // As of AccessUnitParser.
+  // Returns the estimated memory, as AccessUnitParser does.
   std::uint64_t memory_bytes() const { return parser_.memory_bytes(); }
-  // After the last unit.
+  // Returns the shared rig, after the last unit.
   ParsedRig finish() {
     parsed_.rig_idx = parser_.rig_idx();
     parsed_.rig = parser_.finish_rig();

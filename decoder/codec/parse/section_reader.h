@@ -1,5 +1,4 @@
-// A section of a unit (9.3): syntax elements by the range decoder, with their trace and their
-// errors.
+// Reader of a section of a unit (9.3): decodes its syntax elements, with trace and errors.
 #pragma once
 
 #include <array>
@@ -19,7 +18,7 @@ namespace rlpc {
 // caller stops when failed().
 class SectionReader {
  public:
-  // name: of the syntax structure, for errors at its start and end.
+  // name: the syntax structure, for errors at its start and end.
   SectionReader(BitReader& r, const char* name)
       : reader_(r),
         name_(name),
@@ -30,7 +29,7 @@ class SectionReader {
   }
 
   bool failed() const { return reader_.error().has_value(); }
-  std::uint64_t num_bytes() const { return num_bytes_; }  // of the section
+  std::uint64_t num_bytes() const { return num_bytes_; }  // bytes of the section
   void fail(const char* rule, const char* element) {
     reader_.fail(Errc::kInvalid, rule, element, bit_pos());
   }
@@ -40,7 +39,7 @@ class SectionReader {
     if (failed() || needed_bytes <= memory.max_bytes) return;
     reader_.fail(Errc::kLimitExceeded, "", element, bit_pos(), needed_bytes);
   }
-  // A section that ran out of bytes is not decoded any further.
+  // Fails if the section ran out of bytes, so that it is not decoded any further.
   void check_overrun(const char* element) {
     if (rd_.overrun()) fail("R-RNG-01", element);
   }
@@ -70,9 +69,9 @@ class SectionReader {
     trace(element, value, at);
     return value;
   }
-  // The same for each of `values`: rigs_of() gives the models of the next one, expected_of()
-  // its expected magnitude, and update() takes the value. The state of the range decoder stays
-  // in registers unless there is a trace.
+  // Parses each of `values` in the same way: context.models() returns the models of the next
+  // value, context.expected() its expected magnitude, and context.update() takes the value. The
+  // state of the range decoder stays in registers unless there is a trace.
   template <class Context>
   void residuals(Context context, std::span<std::int32_t> values, const char* element) {
     if (reader_.trace() != nullptr) {
@@ -89,7 +88,7 @@ class SectionReader {
     }
     rd_ = rd;
   }
-  // 9.5.4 ae_header( field ): the value before plus a difference, or range.min and an error.
+  // 9.5.4 ae_header( field ): the previous value plus a difference, or range.min and an error.
   int header_value(ResidualModels& models, std::uint32_t& mean, int previous, Range range,
                    const char* element, const char* rule) {
     const std::int32_t delta = residual(models, mean >> 4, element);

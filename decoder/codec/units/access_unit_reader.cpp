@@ -176,7 +176,7 @@ Result<ParsedRig> AccessUnitReader::parse_rig(const Vector<RawUnit>& raw, const 
   return object.parser.finish();
 }
 
-// parse() runs out of memory whenever read() would.
+// Returns a limit with which parse() runs out of memory whenever read() would.
 MemoryLimit AccessUnitReader::limit_ahead(std::uint64_t max_memory_bytes) const {
   const MemoryLimit limit = memory_limit();
   const std::uint64_t left = limit.max_bytes - std::min(limit.max_bytes, limit.bytes_in_use);

@@ -24,12 +24,12 @@ struct RawUnit {
   Vector<std::uint8_t> payload;
 };
 
-// The units of an access unit, not parsed except for the GOF header.
+// Units of an access unit, of which only the GOF header is parsed.
 struct RawAccessUnit {
   GofHeader gof;
   Vector<RawUnit> units;  // the GOF unit first
 
-  // Bytes from the start of the stream.
+  // Returns the end of the units, bytes from the start of the stream.
   std::uint64_t end() const { return units.back().header.end(); }
   std::uint32_t end_frame() const { return gof.first_frame + gof.num_frames; }
 };
@@ -54,30 +54,32 @@ class AccessUnitReader {
     return {memory_.max_bytes, memory_.bytes_in_use + cached_bytes_};
   }
   const SliceCut& cut() const { return cut_; }
-  // Of what read() and read_rig() give from now on.
+  // Sets the cut of read() and read_rig() from now on.
   void set_cut(const SliceCut& cut) { cut_ = cut; }
   // Sets the memory that the rest of the decoder uses from now on.
   void set_bytes_in_use(std::uint64_t bytes) { memory_.bytes_in_use = bytes; }
-  // Beyond that, for GOFs that are kept. Others may be parsing at the same time.
+  // Sets the additional memory of cached GOFs. Other threads may be parsing.
   void set_cached_bytes(std::uint64_t bytes) { cached_bytes_ = bytes; }
 
   // Reads and parses an access unit. gof_unit: its GOF unit; first_frame: the first_frame that
-  // the GOF must have; rigs: those alive.
+  // the GOF must have; rigs: the rigs alive at it.
   Result<AccessUnit> read(const UnitHeader& gof_unit, std::uint32_t first_frame,
                           const RigSlots& rigs);
   // Reads and parses a shared rig.
   Result<ParsedRig> read_rig(const UnitHeader& rig_unit, const RigSlots& rigs);
-  // End of the last access unit or shared rig read, bytes from the start of the stream.
+  // Returns the end of the last access unit or shared rig read, bytes from the start of the
+  // stream.
   std::uint64_t end() const { return end_; }
 
-  // read() in two steps; parse() may run on another thread. max_memory_bytes limits the
-  // payloads and, separately, the parsed result. If a step fails, read() reports the error.
+  // Reads an access unit in two steps, collect() and parse(), of which parse() may run on
+  // another thread. max_memory_bytes limits the payloads and, separately, the parsed result. If
+  // a step fails, read() reports the error.
   std::optional<RawAccessUnit> collect(const UnitHeader& gof_unit, std::uint32_t first_frame,
                                        std::uint64_t max_memory_bytes);
-  // cut: one that no set_cut() changes.
+  // cut: a copy that set_cut() does not change.
   Result<AccessUnit> parse(const RawAccessUnit& raw, const RigSlots& rigs, const SliceCut& cut,
                            std::uint64_t max_memory_bytes) const;
-  // The same for a shared rig.
+  // Read a shared rig in the same two steps.
   std::optional<Vector<RawUnit>> collect_rig(const UnitHeader& rig_unit,
                                              std::uint64_t max_memory_bytes);
   Result<ParsedRig> parse_rig(const Vector<RawUnit>& raw, const RigSlots& rigs,
@@ -101,14 +103,14 @@ class AccessUnitReader {
                                                std::uint64_t max_memory_bytes,
                                                const FollowersOf& followers);
   MemoryLimit limit_ahead(std::uint64_t max_memory_bytes) const;
-  // Whether there is memory for the payload of a unit, in addition to what its access unit or
-  // shared rig has taken.
+  // Returns an error unless the payload of a unit fits the limit, in addition to the memory
+  // that its access unit or shared rig has taken.
   static Result<bool> check_fits(const UnitHeader& unit, std::uint64_t taken_bytes,
                                  const MemoryLimit& memory);
-  // Whether a slice need not be read: the cut drops it.
+  // Returns whether the cut drops a slice, which need not be read.
   template <class Parser>
   Result<bool> is_dropped(const UnitHeader& unit, Parser& parser);
-  // Reads a payload for which there is memory.
+  // Reads the payload of a unit if it fits the limit.
   Result<Vector<std::uint8_t>> payload(const UnitHeader& unit, std::uint64_t taken_bytes);
 
   UnitReader& units_;

@@ -1,4 +1,4 @@
-// The interface through which a decoder reads a stream.
+// Interface through which a decoder reads a stream.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,20 @@ class ByteSource : public Owned {
   ByteSource& operator=(const ByteSource&) = delete;
   virtual ~ByteSource() = default;
 
-  // Of a pipe: reads it to its end.
+  // Returns the size in bytes. Reads a pipe to its end.
   virtual std::uint64_t size() const = 0;
-  // Whether there are at least `end` bytes. Of a pipe: waits for them or for its end.
+  // Returns whether the size is at least `end` bytes. Waits for these bytes of a pipe, or for
+  // its end.
   virtual bool reaches(std::uint64_t end) { return end <= size(); }
-  // Fills `out` from `offset`; false if the bytes are not there or cannot be read.
+  // Fills `out` from `offset`; returns false if the bytes do not exist or cannot be read.
   virtual bool read(std::uint64_t offset, std::span<std::uint8_t> out) = 0;
-  // Bytes before an offset will not be read again.
+  // Declares that bytes before an offset will not be read again.
   virtual void forget(std::uint64_t /*before*/) {}
-  // The memory it holds that counts towards the limits.
+  // Returns the memory it holds that counts towards the limits.
   virtual std::uint64_t memory_bytes() const { return 0; }
 };
 
-// A source that holds a copy of the bytes.
+// Makes a source that holds the bytes.
 std::unique_ptr<ByteSource> memory_source(Vector<std::uint8_t> bytes);
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// A sequence header beyond the limits of the caller.
+// Compares a sequence header with the limits of the caller.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@
 
 namespace rlpc {
 
-// stream_bytes: the memory that the stream takes throughout. Names the element that decides.
+// Returns the error of the first element that exceeds a limit; none if none does. stream_bytes:
+// memory of the stream without GOFs.
 inline std::optional<Error> find_exceeded_limit(const SequenceHeader& header,
                                                 const SequenceHeaderPlaces& places,
                                                 const DecodeLimits& limits,

@@ -1,4 +1,4 @@
-// 6.9: the GOF index of a stream, found from its end.
+// 6.9: finds the GOF index of a stream from its end.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace rlpc {
 
-// What the index before the end of the sequence lists; nothing if there is none. Whether units
-// are there is checked when they are parsed.
+// Returns the index before the end of the sequence; empty if there is none. Its offsets are
+// checked when units are parsed.
 //
 // first_unit: lower bound of the offset of the end of the sequence, bytes.
 Result<GofIndex> find_gof_index(UnitReader& units, std::uint64_t first_unit,

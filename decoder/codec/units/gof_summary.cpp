@@ -28,7 +28,7 @@ GofFigure temporal_layers_of(const SkinnedGof& gof) {
           static_cast<std::uint32_t>(gof.num_temporal_layers), true};
 }
 
-// What has vertices in a skinned GOF or shared rig.
+// Adds the rig of a skinned GOF or shared rig.
 void add_rig(const SharedRig& rig, SlicedSummary& summary) {
   summary.layer_group_size = rig.layer_group_size;
   summary.first_group = "influences, rest positions";
@@ -77,8 +77,8 @@ void add_kind(const InterGof& gof, GofSummary& summary) {
   summary.vertex_modes = vertex_modes(gof);
 }
 
-// 8.14.1 Slices that are absent: adds the groups of `slices` to those that stay. trajectories:
-// of the groups before.
+// 8.14.1 Slices that are absent: adds the groups of `slices` to the groups that stay.
+// trajectories: number in the groups before.
 void add_groups(const Vector<SliceEntry>& slices, const SliceCut& cut,
                 std::uint64_t trajectories, SliceGroups& groups) {
   for (const SliceEntry& slice : slices) {
@@ -101,7 +101,7 @@ GofSummary summary_of(const AccessUnit& access_unit) {
   return summary;
 }
 
-// Collects summaries, with the shared rigs alive.
+// Collects summaries, and tracks the shared rigs alive.
 class Summariser {
  public:
   void add(const ParsedRig& parsed) {
@@ -203,7 +203,7 @@ SliceTotals GofSummary::totals(const SliceGroups& groups) const {
   return totals;
 }
 
-// Local component groups follow those of a complete shared rig.
+// Local component groups follow the groups of a complete shared rig.
 SliceGroups GofSummary::groups_that_stay(const SliceCut& cut) const {
   SliceGroups groups{1, layer_groups_that_stay(layer_group_size, cut)};
   std::uint64_t trajectories = 0;

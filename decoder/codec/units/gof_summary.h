@@ -1,5 +1,5 @@
-// Summarises GOFs and shared rigs in numbers: clusters and components, or bones,
-// trajectories and slices.
+// Summarises GOFs and shared rigs in numbers: clusters and components, or bones, trajectories
+// and slices.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@
 
 namespace rlpc {
 
-// The leading component groups of a GOF or shared rig, including that of the rest positions,
-// its leading layer groups, and its first temporal layers.
+// Numbers of leading component groups, including the group of the rest positions, leading layer
+// groups and first temporal layers of a GOF or shared rig.
 struct SliceGroups {
   std::uint32_t component_groups = SliceCut::kAll;
   std::uint32_t layer_groups = SliceCut::kAll;
@@ -32,17 +32,17 @@ struct SliceGroups {
   }
 };
 
-// Totals within such groups.
+// Totals within SliceGroups.
 struct SliceTotals {
   std::size_t num_slices = 0;
   std::uint32_t num_trajectories = 0;
   std::uint32_t num_layers = 0;  // layers with residuals of rest positions
   std::uint32_t num_temporal_layers = 1;
-  std::uint64_t bytes = 0;  // of the GOF or rig unit and of slice units
+  std::uint64_t bytes = 0;  // GOF or rig unit and slice units
 };
 
-// A number that describes a GOF. one, many: the noun, singular and plural; null: only shown in
-// JSON. only_many: shown in JSON, and elsewhere if it is greater than 1.
+// Number that describes a GOF. one, many: its noun, singular and plural; null: shown only in
+// JSON. only_many: elsewhere than in JSON, shown only if greater than 1.
 struct GofFigure {
   const char* key = nullptr;  // in JSON
   const char* one = nullptr;
@@ -51,25 +51,26 @@ struct GofFigure {
   bool only_many = false;
 };
 
-// A GOF or shared rig.
+// Summary of a GOF or shared rig.
 struct SlicedSummary {
-  std::uint64_t bytes = 0;  // of its unit
+  std::uint64_t bytes = 0;  // its GOF or rig unit
 
   Vector<GofFigure> figures;  // the same keys for each GOF of a kind
 
-  // 0 if the kind lacks the key.
+  // Returns a figure; 0 if the kind lacks the key.
   std::uint32_t figure(std::string_view key) const;
 
-  // Of kinds that have slices.
+  // Groups and slices, in kinds that have them.
   Vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups] layers
   Vector<SliceEntry> slices;                  // or frame units
-  const char* first_group = nullptr;          // what component group 0 has
+  const char* first_group = nullptr;          // contents of component group 0, for people
 
-  // The same, with those that differ only in their frames taken together.
+  // Returns the slices, with slices that differ only in their frames combined.
   Vector<SliceEntry> slices_by_group() const;
-  // Component groups up to the last that has a slice, including that of the rest positions.
+  // Returns the component groups up to the last one with a slice, including the group of the
+  // rest positions.
   std::uint32_t num_groups() const;
-  // Temporal layers up to the last that has a slice.
+  // Returns the temporal layers up to the last one with a slice.
   std::uint32_t num_temporal_layers() const {
     std::uint32_t layers = 1;
     for (const SliceEntry& slice : slices) {
@@ -81,10 +82,10 @@ struct SlicedSummary {
 };
 
 struct RigSummary : SlicedSummary {
-  std::size_t number = 0;  // among those of the stream, counted from 0
+  std::size_t number = 0;  // index among the rigs of the stream
   std::uint32_t rig_idx = 0;
   std::uint32_t num_component_groups = 0;
-  std::uint32_t num_gofs = 0;  // that use it
+  std::uint32_t num_gofs = 0;  // number of GOFs that use it
 
   SliceGroups groups_that_stay(const SliceCut& cut) const;
   bool is_cut_by(const SliceCut& cut) const;
@@ -94,13 +95,13 @@ struct GofSummary : SlicedSummary {
   GofKind kind = GofKind::kCluster;
   std::uint32_t first_frame = 0;
   std::uint32_t num_frames = 0;
-  std::shared_ptr<const RigSummary> rig;  // that it uses; null: none
+  std::shared_ptr<const RigSummary> rig;  // shared rig in use; null: none
   Vector<VertexModes> vertex_modes;       // [num_frames] if it has patches
 
-  // Bytes and slices are its own; layers are those of its shared rig.
+  // Returns totals: bytes and slices of the GOF, layers of its shared rig.
   SliceTotals totals(const SliceGroups& groups) const;
   SliceGroups groups_that_stay(const SliceCut& cut) const;
-  // Whether the GOF or its shared rig loses a slice.
+  // Returns whether the GOF or its shared rig loses a slice.
   bool is_cut_by(const SliceCut& cut) const;
 };
 
@@ -113,8 +114,8 @@ struct StreamSummary {
   }
 };
 
-// Summaries of all GOFs and shared rigs of a stream, which is read to its end. `check` is
-// called with each access unit, and can end it with an error.
+// Summarises all GOFs and shared rigs of a stream, which is read to its end. Calls `check` with
+// each access unit; an error that it returns ends the reading.
 using CheckAccessUnit = std::function<std::optional<Error>(const AccessUnit&)>;
 Result<StreamSummary> summarise_all(StreamReader& stream, const CheckAccessUnit& check = {});
 

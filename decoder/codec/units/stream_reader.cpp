@@ -66,7 +66,7 @@ bool StreamReader::starts_gofs(const UnitHeader& unit) const {
          (unit.type() == UnitType::kRig && units_.version_minor() >= 2);
 }
 
-// 6.3: always the first unit.
+// 6.3: reads the first unit.
 Result<bool> StreamReader::read_sequence_header() {
   const auto unit = units_.header_at(offset_);
   if (!unit) return unit.error();
@@ -120,14 +120,14 @@ Result<bool> StreamReader::read_vertex_order(const UnitHeader& unit) {
   return true;
 }
 
-// Only the first of each counts, as a stream has one at most.
+// Keeps the place of the first unit of each type, as a stream has at most one.
 void StreamReader::keep_place_of(const UnitHeader& unit) {
   if (unit.type() == UnitType::kAttributes && !attribute_unit_) attribute_unit_ = unit;
   if (unit.type() == UnitType::kAsset && !asset_unit_) asset_unit_ = unit;
 }
 
-// Units that a decoder may skip: checks their CRC, and keeps metadata and clips. False:
-// damaged; the unit counts as absent.
+// Reads a unit that a decoder may skip: checks its CRC, and keeps metadata and clips. Returns
+// false if it is damaged and ignored.
 Result<bool> StreamReader::read_ancillary(const UnitHeader& unit) {
   auto ok = parse_ancillary(unit);
   if (ok || !skips_damaged_units_ || !unit.ancillary() || ok.error().code != Errc::kInvalid) {
@@ -135,7 +135,7 @@ Result<bool> StreamReader::read_ancillary(const UnitHeader& unit) {
   }
   const std::uint64_t last = damaged_units_.empty() ? 0 : damaged_units_.back().bit_pos;
   if (ok.error().bit_pos > last)
-    damaged_units_.push_back(ok.error());  // not after a seek again
+    damaged_units_.push_back(ok.error());  // once, not again after a seek
   return false;
 }
 
@@ -223,7 +223,7 @@ Result<std::optional<std::uint32_t>> StreamReader::skip_damage() {
     const auto unit = units_.header_at(offset_);
     if (!unit) return unit.error();
     if (unit->type() == UnitType::kEndOfSequence) return std::optional<std::uint32_t>();
-    // The GOF with the error begins here, if its own unit could be read.
+    // The GOF with the error begins here, if its GOF unit could be read.
     if (unit->type() == UnitType::kGof && !is_first) {
       const auto bytes = units_.payload_start(*unit, kEnough);
       if (!bytes) return bytes.error();
@@ -310,7 +310,7 @@ Result<bool> StreamReader::skip_slices(const UnitHeader& gof_unit, UnitType type
   }
 }
 
-// The number of frames of the GOF, if the frame unit gives it.
+// Returns the number of frames of the GOF, if the frame unit ends it.
 Result<std::optional<std::uint32_t>> StreamReader::gof_end(const UnitHeader& unit) {
   constexpr std::uint32_t kEnough = 9;  // a code of at most 63 bits, and gof_end_flag
   const auto bytes = units_.payload_start(unit, kEnough);
@@ -352,13 +352,13 @@ void StreamReader::go_to(std::uint64_t offset, std::uint32_t first_frame) {
   frames_parsed_ = first_frame;
 }
 
-// Goes past the GOF with the frame, and returns where it is.
+// Goes past the GOF with the frame, and returns its place.
 Result<GofPlace> StreamReader::pass_gofs_to(std::uint32_t frame) {
   ended_ = false;
   const bool met = !gofs_.empty() && frame < frames_parsed_;
   if (!met && !index_tried_) {
     auto index = find_gof_index(units_, offset_, context_.header);
-    // The next GOF needs no index, and the end of the stream may not have arrived yet.
+    // The next GOF needs no index, and the end of the stream may still be missing.
     const bool can_wait = !index && index.error().code == Errc::kIo && frame == frames_parsed_;
     if (!index && !can_wait) return index.error();
     if (index) {
@@ -374,7 +374,7 @@ Result<GofPlace> StreamReader::pass_gofs_to(std::uint32_t frame) {
     offset_ = std::prev(after)->offset;
     frames_parsed_ = std::prev(after)->first_frame;
   }
-  // Skips GOFs forward: only their headers are read.
+  // Skips GOFs, reading only their headers.
   for (;;) {
     const auto unit = find_gof(Rigs::kSkip);
     if (!unit) return unit.error();

@@ -24,7 +24,7 @@ namespace rlpc {
 // max_memory_bytes.
 inline constexpr std::uint32_t kFramesHeld = 4;
 
-// The frames of a GOF, and where its unit is.
+// Frames of a GOF, and the place of its unit.
 struct GofPlace {
   std::uint64_t offset = 0;  // bytes from the start of the stream
   std::uint32_t first_frame = 0;
@@ -46,38 +46,38 @@ class StreamReader {
   // 8.6.1: output index of each decoded vertex; empty: the same.
   std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
   const String& metadata() const { return metadata_; }  // the last so far
-  const Vector<Clip>& clips() const { return clips_; }  // likewise
-  // Of ancillary units that count as absent (DecoderOptions::skip_damaged_units).
+  const Vector<Clip>& clips() const { return clips_; }  // the last clip table so far
+  // Returns the errors of ignored ancillary units (DecoderOptions::skip_damaged_units).
   const Vector<Error>& damaged_units() const { return damaged_units_; }
-  // The asset unit, whose CRC has been checked; none: there is none.
+  // Returns the asset unit, if any, whose CRC has been checked.
   const std::optional<UnitHeader>& asset_unit() const { return asset_unit_; }
-  // The attribute unit, whose CRC has been checked; none: there is none.
+  // Returns the attribute unit, if any, whose CRC has been checked.
   const std::optional<UnitHeader>& attribute_unit() const { return attribute_unit_; }
 
   // Advances to the next GOF unit, past everything in between. None: a proper end of the
-  // sequence. Shared rigs are parsed, or only those that a GOF to be read uses.
+  // sequence. Parses all shared rigs, or skips them until a GOF that is read uses them.
   enum class Rigs : std::uint8_t { kParse, kSkip };
   Result<std::optional<UnitHeader>> find_gof(Rigs rigs = Rigs::kParse);
-  // The access unit that begins with the unit found; advances past it.
+  // Reads the access unit that begins with the unit found, and advances past it.
   Result<AccessUnit> read(const UnitHeader& gof_unit);
-  // The same for an access unit read elsewhere, whose units end at `end`.
+  // Advances past an access unit that was read elsewhere, whose units end at `end`.
   void go_past(const UnitHeader& gof_unit, std::uint32_t num_frames, std::uint64_t end);
   // Finds and reads the next access unit.
   Result<std::optional<AccessUnit>> next();
-  // Of the next GOF: reads only the first bytes of its unit.
+  // Parses the header of the next GOF; reads only the first bytes of its unit.
   Result<GofHeader> gof_header(const UnitHeader& unit);
-  // The number of frames: of an open-ended stream, that at its end; kMaxFrames if it has none.
-  // Does not check the unit. Reads a pipe to its end.
+  // Returns the number of frames, which an open-ended stream has at its end; kMaxFrames if it
+  // has no end. Does not check the unit. Reads a pipe to its end.
   std::uint32_t find_num_frames();
-  // After an error in a GOF: makes the next GOF whose unit can be found the next one, and
-  // returns its first frame; none: the stream has no more. Errors: the units after the error
-  // cannot be told apart; the next GOF does not come after frames that have been read.
+  // Resumes after an error in a GOF: makes the next GOF whose unit can be found the next one,
+  // and returns its first frame; none: the stream has no more GOFs. Errors: the boundaries of
+  // units after the error are unknown, or the next GOF does not follow the frames read so far.
   Result<std::optional<std::uint32_t>> skip_damage();
   // Makes the GOF with `frame` (below num_frames) the next one.
   Result<bool> seek(std::uint32_t frame);
-  // Finds that GOF, and leaves the stream where it is.
+  // Finds the GOF with `frame`, without moving.
   Result<GofPlace> locate(std::uint32_t frame);
-  // Between two units.
+  // Place between two units.
   struct Place {
     std::uint64_t offset = 0;
     std::uint32_t next_first_frame = 0;
@@ -85,20 +85,20 @@ class StreamReader {
   };
   Place place() const { return {offset_, frames_parsed_, ended_}; }
   void return_to(const Place& place);
-  // Goes to a place between units, after frames of which first_frame is the next.
+  // Goes to a place between units; first_frame: the next frame there.
   void go_to(std::uint64_t offset, std::uint32_t first_frame);
 
-  // First frame of the GOF that find_gof() finds.
+  // Returns the first frame of the GOF that find_gof() finds.
   std::uint32_t next_first_frame() const { return frames_parsed_; }
   bool ended() const { return ended_; }
-  std::uint64_t offset() const { return offset_; }  // of the next unit
+  std::uint64_t offset() const { return offset_; }  // offset of the next unit
   std::uint32_t num_gofs() const { return static_cast<std::uint32_t>(gofs_.size()); }
-  // The memory that kept GOFs take from now on.
+  // Sets the memory of cached GOFs from now on.
   void set_cached_bytes(std::uint64_t bytes) {
     units_.set_bytes_in_use(bytes_in_use_ + bytes);
     access_units_.set_cached_bytes(bytes);
   }
-  // Estimated, without GOFs.
+  // Returns the estimated memory in use, without GOFs.
   std::uint64_t bytes_in_use() const { return bytes_in_use_; }
   UnitReader& units() { return units_; }
   AccessUnitReader& access_units() { return access_units_; }
@@ -107,7 +107,7 @@ class StreamReader {
  private:
   bool starts_gofs(const UnitHeader& unit) const;
   Result<bool> read_sequence_header();
-  // Counts something that is kept, in place of what was kept before.
+  // Replaces the bytes counted for an object that is kept.
   void count_kept(std::uint64_t before, std::uint64_t now);
   Result<bool> read_connectivity(const UnitHeader& unit);
   Result<bool> read_vertex_order(const UnitHeader& unit);
@@ -127,7 +127,7 @@ class StreamReader {
   DecodeLimits limits_;
   bool is_coarse_;
   bool skips_damaged_units_;
-  std::uint64_t bytes_in_use_ = 0;  // without kept GOFs
+  std::uint64_t bytes_in_use_ = 0;  // without cached GOFs
   UnitReader units_;
   StreamContext context_;
   AccessUnitReader access_units_;
@@ -142,7 +142,7 @@ class StreamReader {
 
   std::uint64_t offset_ = kStreamHeaderBytes;
   std::uint32_t frames_parsed_ = 0;
-  Vector<GofLocation> gofs_;  // those seen so far, ascending
+  Vector<GofLocation> gofs_;  // GOFs seen so far, ascending
   bool index_tried_ = false;
   bool ended_ = false;
 };

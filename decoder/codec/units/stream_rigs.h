@@ -1,4 +1,4 @@
-// The shared rigs of a stream: where they are, and those that a GOF can use.
+// Shared rigs of a stream: their places, and those that a GOF can use.
 #pragma once
 
 #include <array>
@@ -17,41 +17,42 @@
 
 namespace rlpc {
 
-// 6.2 CheckUnitType( expected ): the error of a unit in the wrong place, or of a critical one
-// that this version does not know.
+// 6.2 CheckUnitType( expected ): returns the error of a unit in the wrong place, or of a
+// critical unit of unknown type.
 Error misplaced(const UnitHeader& unit, std::uint32_t version_minor);
 
 class StreamRigs {
  public:
-  // Both must outlive it.
+  // Both arguments must outlive it.
   StreamRigs(UnitReader& units, AccessUnitReader& access_units)
       : units_(units), access_units_(access_units) {}
 
-  // What is known without parsing it: the list of the GOF index.
+  // Adds the rigs that the GOF index lists, without parsing them.
   void add(const Vector<RigLocation>& locations);
-  // A rig that was parsed elsewhere; end: of its units, bytes from the start of the stream.
+  // Adds a rig that was parsed elsewhere. end: end of its units, bytes from the start of the
+  // stream.
   void add(std::uint64_t offset, std::uint64_t end, const ParsedRig& parsed);
 
-  // A rig unit that the stream is at: parses it with its slices, unless that has been
-  // done. Returns the end of its units.
+  // Parses the rig unit that the stream is at with its slices, unless it is already parsed.
+  // Returns the end of its units.
   Result<std::uint64_t> read(const UnitHeader& unit);
-  // The same, but only finds out its index and its end.
+  // Finds the index and the end of that rig without parsing it. Returns the end of its units.
   Result<std::uint64_t> skip(const UnitHeader& unit);
-  // Those alive at a GOF unit, by its offset; parses those that are not kept, and drops all
-  // others.
+  // Returns the rigs alive at the GOF unit at an offset: parses those that are not kept, and
+  // drops all others.
   Result<RigSlots> at(std::uint64_t gof_offset);
-  // The same rigs, in the order of the stream, without parsing or dropping any.
+  // Returns the same rigs, in the order of the stream, without parsing or dropping any.
   struct Alive {
     std::uint64_t offset = 0;
     std::uint32_t rig_idx = 0;
-    std::shared_ptr<const SharedRig> rig;  // null: has to be parsed
+    std::shared_ptr<const SharedRig> rig;  // null: not parsed
   };
   Vector<Alive> find_alive(std::uint64_t gof_offset) const;
 
-  // Calls `see` with each shared rig that read() parses.
+  // Sets a function to call with each shared rig that read() parses.
   using See = std::function<void(const ParsedRig& rig)>;
   void watch(See see) { see_ = std::move(see); }
-  // Calls `dropped` when rigs have been dropped.
+  // Sets a function to call after rigs have been dropped.
   void when_dropped(std::function<void()> dropped) { dropped_ = std::move(dropped); }
 
  private:
@@ -59,20 +60,20 @@ class StreamRigs {
     std::uint32_t rig_idx = 0;
     std::uint64_t end = 0;                   // 0: not known
     std::shared_ptr<const SharedRig> rig;    // null: not parsed, or dropped
-    std::weak_ptr<const SharedRig> dropped;  // while a GOF that is kept uses it
+    std::weak_ptr<const SharedRig> dropped;  // alive while a cached GOF uses it
   };
-  // In the order of the stream.
+  // Returns the offsets of the rigs alive at an offset, in the order of the stream.
   Vector<std::uint64_t> alive_at(std::uint64_t offset) const;
   void put(std::uint64_t offset, Entry entry);
-  // Whether the rig is there, possibly because somebody else has kept it.
+  // Restores a dropped rig that has another owner. Returns whether the entry has its rig.
   bool take_back(std::uint64_t offset, Entry& entry);
   Result<bool> parse(std::uint64_t offset, Entry& entry, const RigSlots& rigs);
 
   UnitReader& units_;
   AccessUnitReader& access_units_;
-  Map<std::uint64_t, Entry> entries_;                 // by offset
-  std::array<Set<std::uint64_t>, kMaxRigs> offsets_;  // of the entries, by rig_idx
-  Set<std::uint64_t> kept_;                           // those whose rig is there
+  Map<std::uint64_t, Entry> entries_;                 // key: offset
+  std::array<Set<std::uint64_t>, kMaxRigs> offsets_;  // [rig_idx] offsets of entries
+  Set<std::uint64_t> kept_;                           // offsets of entries with a rig
   See see_;
   std::function<void()> dropped_;
 };

@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// Which units may follow within an access unit or a shared rig.
+// The units that may follow within an access unit or a shared rig.
 struct Followers {
   std::optional<UnitType> slice{};  // slice or frame units
   bool hash = false;                // one GOF hash, after all others

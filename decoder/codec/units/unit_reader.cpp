@@ -43,7 +43,7 @@ Result<bool> UnitReader::stream_header() {
   }
   if (bytes[8] != kVersionMajor)
     return Error{Errc::kUnsupported, "R-STR-02", "version_major", 64};
-  // Version 1.1 called a stream unsupported that ends after the number of version 1.2.
+  // Version 1.1 reported streams that end after the number of version 1.2 as unsupported.
   const bool ends_here = bytes[9] == 2 && !source_->reaches(bytes.size() + 1);
   if (bytes[9] > kVersionMinor || ends_here) return unsupported_minor_version();
   version_minor_ = bytes[9];

@@ -20,8 +20,8 @@ namespace rlpc {
 
 struct UnitHeader {
   std::uint8_t type_byte = 0;  // ancillary_flag and unit_type
-  std::uint32_t size = 0;      // of the payload, bytes
-  std::uint64_t offset = 0;    // of the unit, bytes from the start of the stream
+  std::uint32_t size = 0;      // payload bytes
+  std::uint64_t offset = 0;    // bytes from the start of the stream to the unit
 
   UnitType type() const { return static_cast<UnitType>(type_byte); }
   bool ancillary() const { return (type_byte & kAncillaryFlag) != 0; }
@@ -31,7 +31,7 @@ struct UnitHeader {
 
 class UnitReader {
  public:
-  // max_memory_bytes: of what payload() reads, together with the bytes in use.
+  // max_memory_bytes: limit of a payload together with the bytes in use.
   explicit UnitReader(std::unique_ptr<ByteSource> source, Trace* trace = nullptr,
                       std::uint64_t max_memory_bytes = kMaxPayloadBytes)
       : source_(std::move(source)),
@@ -39,14 +39,14 @@ class UnitReader {
         memory_{max_memory_bytes, 0},
         bytes_at_first_(source_->memory_bytes()) {}
 
-  // 6.1: signature and version.
+  // 6.1: reads signature and version.
   Result<bool> stream_header();
   // Sets the maximum payload of critical units from now on: MaxUnitBytes of Annex B.
   void set_max_unit_bytes(std::uint64_t bytes) { max_unit_bytes_ = bytes; }
   // Reads the header of the unit at a byte offset, and checks that the unit ends within the
   // stream.
   Result<UnitHeader> header_at(std::uint64_t offset);
-  // Sets the memory that others use from now on.
+  // Sets the memory that the rest of the decoder uses from now on.
   void set_bytes_in_use(std::uint64_t bytes) { memory_.bytes_in_use = bytes; }
   // Reads the payload of a unit and checks its CRC.
   Result<Vector<std::uint8_t>> payload(const UnitHeader& unit);
@@ -54,29 +54,29 @@ class UnitReader {
   Result<bool> skip(const UnitHeader& unit);
   // Reads up to max_bytes from the beginning of a payload, without checking the CRC.
   Result<Vector<std::uint8_t>> payload_start(const UnitHeader& unit, std::uint32_t max_bytes);
-  // Reader over a payload, with positions from the start of the stream.
+  // Returns a reader of a payload, with positions from the start of the stream.
   BitReader bits(const UnitHeader& unit, const Vector<std::uint8_t>& payload) const {
     return BitReader(payload, unit.payload_offset() * 8, trace_);
   }
 
-  // Traces the unit_crc of the last payload, which follows the payload's elements.
+  // Traces the unit_crc of the last payload, after the elements of the payload.
   void flush_trace();
 
   std::uint32_t version_minor() const { return version_minor_; }
-  // Of a pipe: reads it to its end.
+  // Returns the size of the stream in bytes. Reads a pipe to its end.
   std::uint64_t size() const { return source_->size(); }
-  // Whether the stream goes on after its first `end` bytes. Waits for a pipe.
+  // Returns whether the stream continues after its first `end` bytes. Waits for a pipe.
   bool goes_on_after(std::uint64_t end) const { return source_->reaches(end + 1); }
   void forget(std::uint64_t before) { source_->forget(before); }
 
  private:
-  // What a vector can hold in addition to header and CRC, on 32-bit machines, too.
+  // Largest payload that a vector can hold with header and CRC, also on 32-bit machines.
   static constexpr std::uint64_t kMaxPayloadBytes =
       std::uint64_t{std::numeric_limits<std::ptrdiff_t>::max()} - kUnitHeaderBytes -
       kUnitCrcBytes;
 
   void trace_header(const UnitHeader& unit);
-  // unit_crc: as in the stream.
+  // Compares a computed CRC with unit_crc of the stream.
   Result<bool> check_crc(const UnitHeader& unit, std::uint32_t computed,
                          std::uint32_t unit_crc);
 

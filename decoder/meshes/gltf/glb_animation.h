@@ -1,4 +1,4 @@
-// Animations of a glTF file: one for each clip of the stream.
+// Animations of a glTF file, one per clip of the stream.
 #pragma once
 
 #include <cstdint>
@@ -12,28 +12,29 @@
 
 namespace rlpc {
 
-// The frames of each animation, which together are all of them: the clips; frames between
-// clips, as clips that are called by their numbers; without clips, all frames without a name.
-// first_number: of frame 0, for these names.
+// Returns the frames of each animation, which together are all frames: the clips, and frames
+// between clips as clips named by their numbers; without clips, one clip without a name.
+// first_number: number of frame 0 in these names.
 std::vector<Clip> animation_spans(std::span<const Clip> clips, std::uint32_t num_frames,
                                   std::uint32_t first_number);
 
 // Makes one animation: samplers, and the channels that they feed.
 class GlbAnimation {
  public:
-  // Frames [0, num_frames) of the clip.
+  // Starts an animation of all frames of the clip.
   GlbAnimation(GlbBuffers& buffers, const Clip& clip, FrameRate frame_rate)
       : buffers_(buffers), clip_(clip), frame_rate_(frame_rate) {}
 
   const Clip& clip() const { return clip_; }
-  // keys: frames of the clip, ascending, at least one; output: accessor of the values.
+  // Adds a channel. keys: frames of the clip, ascending, at least one; output: accessor of the
+  // values.
   void add_channel(std::uint32_t node, const char* path, std::span<const std::uint32_t> keys,
                    std::uint32_t output);
-  // Whether some channel has keys in the first and in the last frame of the clip.
+  // Returns whether a channel has keys in the first and in the last frame of the clip.
   bool spans_clip() const;
-  // All frames of the clip as keys.
+  // Returns all frames of the clip as keys.
   std::vector<std::uint32_t> all_frames() const;
-  // To be called once.
+  // Returns the animation as JSON. Must be called once.
   GltfJson json();
 
  private:
@@ -47,7 +48,7 @@ class GlbAnimation {
   GlbBuffers& buffers_;
   const Clip& clip_;
   FrameRate frame_rate_;
-  std::vector<Times> times_;  // of all samplers so far
+  std::vector<Times> times_;  // keys of all samplers so far
   GltfJson channels_ = GltfJson::array();
   GltfJson samplers_ = GltfJson::array();
 };

@@ -26,7 +26,7 @@ GltfJson accessor_of(int component, std::uint64_t count, const char* type) {
   return {{"componentType", component}, {"count", count}, {"type", type}};
 }
 
-// Sets minimum and maximum per axis, which accessors of positions must have.
+// Sets minimum and maximum per axis, as accessors of positions require.
 template <class T>
 void set_bounds(GltfJson& accessor, std::span<const T> xyz) {
   GltfJson min = GltfJson::array();
@@ -45,10 +45,10 @@ void set_bounds(GltfJson& accessor, std::span<const T> xyz) {
   accessor["max"] = std::move(max);
 }
 
-// Bytes of the two views of a sparse accessor, which are JSON.
+// JSON bytes of the two views of a sparse accessor.
 constexpr std::uint64_t kSparseJsonBytes = 240;
 
-// Whether a sparse accessor is smaller. value_bytes: of a value, padded or not.
+// Returns whether a sparse accessor is smaller. The bytes are those of a value, padded or not.
 bool is_sparse(std::uint64_t places, std::uint64_t count, std::uint64_t padded_bytes,
                std::uint64_t value_bytes) {
   const std::uint64_t index_bytes = count <= kMaxShortVertices ? 2 : 4;
@@ -62,7 +62,7 @@ std::string bytes_of_floats(std::span<const float> values) {
   return bytes;
 }
 
-// The lowest `bytes` bytes of a number.
+// Appends the lowest `bytes` bytes of a number.
 void append_unsigned(std::string& text, std::uint32_t value, std::size_t bytes) {
   append_u32(text, value);
   text.resize(text.size() - (4 - bytes));
@@ -95,7 +95,7 @@ bool BinaryChunk::append(std::string_view bytes) {
          std::fwrite(kZeros.data(), 1, padding, file_) == padding;
 }
 
-// `target`: bufferView.target; 0: none.
+// Adds a view. target: bufferView.target; 0: none.
 std::uint32_t GlbBuffers::add_view(std::string_view bytes, int target) {
   GltfJson view = {{"buffer", 0}, {"byteOffset", chunk_.size()}, {"byteLength", bytes.size()}};
   if (target != 0) view["target"] = target;
@@ -114,7 +114,7 @@ std::uint32_t GlbBuffers::add_accessor(GltfJson accessor) {
   return static_cast<std::uint32_t>(accessors_.size() - 1);
 }
 
-// The sparse part of an accessor that is zero except for `values` at `places`.
+// Returns the sparse part of an accessor that is zero except for `values` at `places`.
 GltfJson GlbBuffers::sparse(const std::vector<std::uint32_t>& places, std::uint64_t count,
                             std::string_view values) {
   const bool is_short = count <= kMaxShortVertices;
@@ -248,7 +248,7 @@ std::uint32_t GlbBuffers::add_joint_weights(std::span<const std::uint16_t> weigh
   return add_accessor(std::move(accessor));
 }
 
-// The values of animations follow each other in one view, each at a multiple of 4.
+// Adds values of animations, which share one view, each at a multiple of 4.
 std::uint32_t GlbBuffers::add_packed(GltfJson accessor, std::string bytes) {
   bytes.resize((bytes.size() + 3) / 4 * 4);
   if (packed_view_) {

@@ -1,4 +1,4 @@
-// A .glb file in the making: its JSON chunk and its binary chunk.
+// A .glb file under construction: its JSON chunk and its binary chunk.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,12 @@ struct GlbDocument {
   GlbBuffers buffers;
 };
 
-// The JSON; bytes of names that are no UTF-8 are replaced.
+// Returns the JSON text; bytes of names that are not UTF-8 are replaced.
 std::string glb_text(const GltfJson& root);
 
 OutputError too_large_for_glb(const std::string& path);
 
-// Why the document cannot be written, as far as it has been made; none: nothing speaks against
-// it. limit: null for none.
+// Returns why the document so far cannot be written; none if it can. limit: null for none.
 std::optional<OutputError> failure_of(const GlbDocument& document, const std::string& path,
                                       const std::shared_ptr<OutputLimit>& limit);
 

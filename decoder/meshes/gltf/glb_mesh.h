@@ -1,4 +1,4 @@
-// What is the same in all frames of a glTF mesh: its vertices and triangles.
+// Vertices and triangles of a glTF mesh, which are the same in all frames.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +12,22 @@
 
 namespace rlpc {
 
-// A mesh in glTF has one list of vertices for all attributes. Where an attribute differs
-// between the triangles at a vertex of the stream, that vertex is there several times.
+// Mesh with one list of vertices for all attributes, as glTF requires: a vertex of the stream
+// at which an attribute differs between triangles is repeated.
 struct GlbMesh {
   struct Part {                             // a primitive
-    std::vector<Triangle> triangles;        // of output vertices; none: the vertices as points
-    std::optional<std::uint32_t> material;  // none: the default one of glTF
+    std::vector<Triangle> triangles;        // indices of output vertices; empty: points
+    std::optional<std::uint32_t> material;  // none: the default material of glTF
   };
 
-  std::vector<std::uint32_t> vertex;  // [output vertex]: its vertex in the stream
+  std::vector<std::uint32_t> vertex;  // [output vertex] vertex of the stream
   std::vector<Part> parts;
 };
 
-// Each vertex once, all triangles in one part.
+// Returns a mesh with each vertex once and all triangles in one part.
 GlbMesh plain_mesh(std::uint32_t num_vertices, std::vector<Triangle> triangles);
 
-// Values of the vertices of the stream, `width` each, for the output vertices.
+// Copies values of the vertices of the stream, `width` each, to the output vertices.
 template <class T>
 std::vector<T> of_output_vertices(const GlbMesh& mesh, std::span<const T> values,
                                   std::size_t width) {
@@ -40,8 +40,8 @@ std::vector<T> of_output_vertices(const GlbMesh& mesh, std::span<const T> values
   return expanded;
 }
 
-// The primitives of the mesh. attributes: accessors by name; targets: of morph targets, the
-// same.
+// Returns the primitives of the mesh. attributes: accessors by name; targets: accessors by name
+// of each morph target.
 GltfJson primitives_of(const GlbMesh& mesh, const GltfJson& attributes, const GltfJson& targets,
                        GlbBuffers& buffers);
 

@@ -16,27 +16,26 @@ namespace {
 constexpr const char* kQuantization = "KHR_mesh_quantization";
 
 constexpr std::uint32_t kMeshNode = 0;
-constexpr std::uint32_t kRootNode = 1;  // the parent of bones without one
+constexpr std::uint32_t kRootNode = 1;  // parent of root bones
 constexpr std::uint32_t kFirstJoint = 2;
 
-// Keys are dropped where that moves vertices by no more than this part of the tolerated error.
-// 1/8 takes up to 1 % more bytes; with 1/2, targets that make up for it take more than keys
-// save.
+// Part of the tolerated error by which dropping keys may move vertices. 1/8 takes up to 1 %
+// more bytes; with 1/2, targets that compensate take more than keys save.
 constexpr double kKeyTolerance = 1.0 / 4;
 
-// Frames in which weights of 8 bits are tried, or so. They may move vertices by as much as is
-// tolerated: the rest shape and targets make up for most of it.
+// Approximate number of frames in which weights of 8 bits are tried. They may move vertices by
+// the whole tolerance: the rest shape and targets compensate for most of it.
 constexpr std::size_t kFramesOfWeights = 32;
 
-// The least error that targets aim at: a part of the one that the stream is likely to have.
-// That one is due to rounding, with which that of the skin has little to do, so that half of it
-// adds 12 %. Between half and all of it, TargetPrice decides: the knight's 76 clips then take
-// 43 targets and 3.4 MB, instead of 256 and 7.0 MB for an error that is 17 % smaller in all;
-// files of q-spider, q-trex and robot become 12 to 16 % smaller.
+// Smallest error that targets aim at, as a part of the likely error of the stream. That is
+// rounding, nearly independent of the error of the skin, so that half of it adds 12 %. Between
+// half and all of it, TargetPrice decides: the knight's 76 clips then take 43 targets and 3.4
+// MB, instead of 256 and 7.0 MB for a total error that is 17 % smaller; files of q-spider,
+// q-trex and robot become 12 to 16 % smaller.
 constexpr double kToleratedPart = 1.0 / 2;
 
-// The error that the stream is likely to have, RMS of a vertex: encoders choose steps so that
-// all values contribute alike, a value of a vertex in all frames as much as one of a frame to
+// Returns the likely error of the stream, RMS of a vertex: encoders choose steps so that all
+// values contribute equally, a value of a vertex to all frames as much as a value of a frame to
 // all vertices.
 double likely_rms(const SkinSource& source) {
   const Skeleton& skeleton = *source.skeleton;
@@ -48,8 +47,8 @@ double likely_rms(const SkinSource& source) {
          std::sqrt(values_of_vertex / 12);
 }
 
-// How far from its origin each joint moves vertices, its own and those of its children, in the
-// first frame.
+// Returns the largest distance from the origin of each joint to its vertices and those of its
+// children, in the first frame.
 std::vector<double> reach_of(const SkinSource& source) {
   const Skeleton& skeleton = *source.skeleton;
   const JointPlaces& places = source.places[0];
@@ -68,7 +67,7 @@ std::vector<double> reach_of(const SkinSource& source) {
   return reach;
 }
 
-// Influences of 8 bits, unless these move vertices by an RMS of more than `tolerance`.
+// Returns influences of 8 bits, unless these move vertices by an RMS of more than `tolerance`.
 SkinInfluences small_influences(const SkinSource& source, double tolerance) {
   SkinInfluences exact = written_influences(*source.skeleton, kShortWhole);
   SkinInfluences small = written_influences(*source.skeleton, kByteWhole);
@@ -89,7 +88,7 @@ SkinInfluences small_influences(const SkinSource& source, double tolerance) {
   return left >= 0 ? small : exact;
 }
 
-// The maps of all frames; of a frame in several clips, those of the first.
+// Returns the maps of all frames; in a frame of several clips, those of the first clip.
 std::vector<JointMaps> maps_of_frames(const JointMotion& motion, std::span<const Clip> spans,
                                       std::size_t num_frames) {
   std::vector<JointMaps> maps(num_frames);
@@ -162,7 +161,7 @@ GltfJson animation_of(const Clip& clip, FrameRate frame_rate,
   return animation.json();
 }
 
-// The attributes and morph targets of the mesh.
+// Returns the mesh with its attributes and morph targets.
 GltfJson mesh_of(const GltfLook& look, std::size_t num_joints, std::span<const float> rest,
                  const SkinInfluences& influences, std::span<const float> normals,
                  const SkinTargets& targets, GlbBuffers& buffers) {
@@ -183,7 +182,7 @@ GltfJson mesh_of(const GltfLook& look, std::size_t num_joints, std::span<const f
   return json;
 }
 
-// Of a file with joints alone.
+// Returns the size of a file with joints alone.
 double bytes_without_targets(const GltfLook& look, const JointMotion& motion,
                              std::span<const float> rest, const SkinInfluences& influences,
                              std::span<const Clip> spans, FrameRate frame_rate) {
@@ -229,7 +228,7 @@ GlbSkin add_skin(GlbDocument& document, const GltfLook& look, SkinSource& source
   if (look.has_normals()) vertices = normal_vertices(look.mesh(), influences, rest, missing);
   targets.places =
       principal_shapes(std::move(missing), tolerated_rms, limits.max_targets, price);
-  // None, but of all frames.
+  // No targets, in all frames.
   targets.normals.weights.resize(0, static_cast<Eigen::Index>(source.frames.size()));
   SkinNormals normals;
   if (look.has_normals()) {

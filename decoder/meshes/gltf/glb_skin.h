@@ -1,4 +1,4 @@
-// An animation as a skin: joints that move a rest shape, and morph targets for what they leave.
+// Animation as a skin: joints that move a rest shape, and morph targets for the residual.
 #pragma once
 
 #include <cstddef>
@@ -19,19 +19,19 @@ namespace rlpc {
 
 struct GlbSkin {
   std::size_t num_joints = 0;
-  std::size_t num_targets = 0;  // of positions and of normals
-  SkinError error;              // against the frames
-  double stream_rms = 0;        // the error that the stream is likely to have itself
-  bool lacks_normals = false;   // targets for them were left out, for their memory
+  std::size_t num_targets = 0;  // targets of positions and normals
+  SkinError error;              // distance from the frames
+  double stream_rms = 0;        // likely error of the stream itself
+  bool lacks_normals = false;   // targets of normals were left out, as they need memory
 };
 
-// What a skin is made of.
+// Frames, skeleton and places of joints from which a skin is made.
 struct SkinSource {
   std::shared_ptr<const Skeleton> skeleton;
   Grid grid;
-  std::vector<JointPlaces> places;         // [frame][bone]; empty: not known
-  std::vector<std::vector<float>> frames;  // [frame], of the vertices of the stream
-  std::size_t num_values = 0;              // coded for frames whose places are known
+  std::vector<JointPlaces> places;         // [frame][bone]; a frame may be empty: unknown
+  std::vector<std::vector<float>> frames;  // [frame][3 * vertex of the stream + axis]
+  std::size_t num_values = 0;              // values coded for frames with known places
 };
 
 struct SkinLimits {
@@ -39,8 +39,7 @@ struct SkinLimits {
   std::uint64_t max_normal_bytes = 0;  // memory for normals of all frames
 };
 
-// Fills the document. source: places that are not known are fitted. spans: of
-// animation_spans().
+// Fills the document, and fits unknown places of the source. spans: see animation_spans().
 GlbSkin add_skin(GlbDocument& document, const GltfLook& look, SkinSource& source,
                  std::span<const Clip> spans, FrameRate frame_rate, const SkinLimits& limits);
 

@@ -8,7 +8,7 @@
 namespace rlpc {
 namespace {
 
-// Of a name that is the word and a number as Table F-1 writes it.
+// Returns the number of a name that is the word and a number, as in Table F-1.
 std::optional<std::uint32_t> number_after(const std::string& word, const std::string& name) {
   constexpr std::uint32_t kMost = 255;  // sets are numbered from 0 on without gaps
   for (std::uint32_t n = 0; n <= kMost; ++n) {
@@ -41,7 +41,7 @@ GltfLook::GltfLook(const std::vector<AttributeSet>& sets, std::span<const Triang
   make_parts(sets, drawn_->vertices().triangles);
 }
 
-// A part of the mesh for each pair of a material and a part of the stream.
+// Makes a part of the mesh for each pair of a material and a part of the stream.
 void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
                           std::span<const Triangle> triangles) {
   const auto of_triangles = [&](const char* name) {
@@ -70,8 +70,8 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
   mesh_.parts.push_back({{}, has_one ? std::optional<std::uint32_t>(0) : std::nullopt});
 }
 
-// Sets that were equal to others in the input (encoder/meshes/gltf/equal_uv.h): by their
-// numbers.
+// Returns, by number, sets that were equal to others in the input
+// (encoder/meshes/gltf/equal_uv.h).
 std::map<std::uint32_t, std::uint32_t> GltfLook::equal_uvs() const {
   std::map<std::uint32_t, std::uint32_t> equal;
   constexpr std::size_t kMost = 256;
@@ -99,8 +99,8 @@ void GltfLook::add_values(GltfJson& attributes, GlbBuffers& buffers) const {
   for (const auto& [number, first] : equal_uvs()) accessors[number] = accessors[first];
   std::uint32_t next = 0;
   for (const auto& [number, accessor] : accessors) {
-    // glTF allows no gaps between the numbers, by which materials choose sets: copies fill
-    // them.
+    // Copies fill gaps between the numbers, which glTF does not allow: materials refer to sets
+    // by number.
     for (; next <= number; ++next) attributes[name_of(next)] = accessor;
   }
   next = 0;
@@ -111,7 +111,7 @@ void GltfLook::add_values(GltfJson& attributes, GlbBuffers& buffers) const {
   }
 }
 
-// Images of the same view share it here, too.
+// Adds images; images of the same view share it in the file.
 void GltfLook::add_images(GltfJson& images, GlbBuffers& buffers) const {
   std::map<std::uint64_t, std::uint32_t> added;
   for (GltfJson& image : images) {
@@ -145,7 +145,7 @@ std::vector<float> GltfLook::normals(FrameNormals& of_frames,
 
 void GltfLook::add_materials(GltfJson& root, GlbBuffers& buffers) const {
   const GltfJson& asset = asset_.root();
-  if (asset.is_null()) {  // of OBJ files, say: glTF's own default is metal, seen from the front
+  if (asset.is_null()) {  // as from OBJ files; the default of glTF is metal and single-sided
     root["materials"] = GltfJson::array(
         {{{"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}}});
     return;

@@ -1,6 +1,6 @@
-// A target holds differences from frame 0. Where such a difference is not exact in 32-bit
-// floats, the sum would miss the position. Such frames get their positions as the target,
-// together with a common target that cancels frame 0.
+// A target holds differences from frame 0. If a difference is not exact in 32-bit floats, the
+// sum would miss the position; the target of such a frame holds its positions, combined with a
+// common target that cancels frame 0.
 #include "decoder/meshes/gltf/gltf_morph.h"
 
 #include <utility>
@@ -11,7 +11,7 @@
 namespace rlpc {
 namespace {
 
-// Differences of a frame from frame 0; none if any sum would not be exact.
+// Returns the differences of a frame from frame 0; none if any sum would not be exact.
 std::optional<std::vector<float>> exact_moves(std::span<const float> from,
                                               std::span<const float> to) {
   std::vector<float> moves(from.size());
@@ -48,7 +48,7 @@ void GltfMorph::add_frame(std::span<const float> xyz) {
   ++num_frames_;
 }
 
-// Adds what a frame changes of the normals to its target, the last one.
+// Adds the changes of the normals in a frame to its target, the last one.
 void GltfMorph::add_normal_moves(std::span<const float> xyz) {
   if (base_normals_.empty()) return;
   std::vector<float> moves = look_.normals(xyz);
@@ -61,7 +61,8 @@ std::uint32_t GltfMorph::add_target(std::uint32_t accessor) {
   return static_cast<std::uint32_t>(targets_.size() - 1);
 }
 
-// Comes before the targets of the frames that need it, so that sums stay exact.
+// Returns the target that cancels frame 0. It precedes the targets of the frames that need it,
+// so that sums stay exact.
 std::uint32_t GltfMorph::minus_base_target() {
   if (!minus_base_) {
     std::vector<float> minus(base_.size());
@@ -71,7 +72,7 @@ std::uint32_t GltfMorph::minus_base_target() {
   return *minus_base_;
 }
 
-// The weights of all targets in the frames of a clip.
+// Adds the weights of all targets in the frames of a clip.
 std::uint32_t GltfMorph::weights_of(const Clip& clip) {
   std::vector<std::uint32_t> places;
   for (const Weight& w : weights_) {

@@ -1,5 +1,5 @@
-// Frames as morph targets: frame 0 is the mesh, every other frame that differs from it a morph
-// target with weight 1 at the time of the frame. Viewers interpolate in between (LINEAR).
+// Frames as morph targets: frame 0 is the mesh, and every other frame that differs from it is a
+// morph target with weight 1 at its time. Viewers interpolate in between (LINEAR).
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,14 @@ namespace rlpc {
 
 class GltfMorph {
  public:
-  // Both must outlive it.
+  // Document and look must outlive it.
   GltfMorph(GlbDocument& document, const GltfLook& look)
       : document_(document), look_(look), mesh_(look.mesh()) {}
 
-  // xyz of the vertices of the stream.
+  // Adds a frame. xyz: vertices of the stream.
   void add_frame(std::span<const float> xyz);
-  // Completes the document. False if it would be too large. spans: of animation_spans().
+  // Completes the document. Returns false if it would be too large. spans: see
+  // animation_spans().
   bool finish(std::span<const Clip> spans, FrameRate frame_rate);
 
   std::size_t num_targets() const { return targets_.size(); }
@@ -43,10 +44,10 @@ class GltfMorph {
   const GltfLook& look_;
   const GlbMesh& mesh_;
   GltfJson targets_ = GltfJson::array();
-  std::vector<Weight> weights_;  // those that are 1, ascending
-  std::vector<float> base_;      // frame 0, of output vertices
+  std::vector<Weight> weights_;  // weights of 1, ascending by frame
+  std::vector<float> base_;      // [output vertex][3] positions in frame 0
   std::vector<float> base_normals_;
-  GltfJson attributes_;  // of frame 0
+  GltfJson attributes_;  // accessors of frame 0
   std::optional<std::uint32_t> minus_base_;
   std::uint32_t num_frames_ = 0;
 };

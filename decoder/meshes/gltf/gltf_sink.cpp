@@ -13,13 +13,13 @@ namespace {
 
 using std::to_string;
 
-// A skin is made from all frames at once, which are there twice as floats.
+// Memory per position of a skin, which is made from all frames at once, held twice as floats.
 constexpr std::uint64_t kSkinBytesOfPosition = 24;
 
-// Every frame as a morph target.
+// Writes every frame as a morph target.
 class GltfMorphSink final : public GltfSink {
  public:
-  // why: a remark, if not empty.
+  // why: a remark; may be empty.
   GltfMorphSink(SinkOptions of_sink, OutputFile file, const std::string& why)
       : GltfSink(std::move(of_sink), std::move(file)),
         document_(options().frame_rate),

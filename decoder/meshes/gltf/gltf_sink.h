@@ -1,4 +1,4 @@
-// What the sinks of .glb files have in common.
+// Base class of the sinks of .glb files.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace rlpc {
 
-// Beyond about so many targets, three.js shows none: graphics cards have 2,048 layers.
+// Number of targets beyond which three.js shows none: graphics cards have 2,048 layers.
 inline constexpr std::size_t kMostTargetsShown = 2000;
 
 class GltfSink : public FrameSink {
@@ -29,13 +29,13 @@ class GltfSink : public FrameSink {
   std::vector<std::string> remarks() const final { return remarks_; }
 
  protected:
-  // xyz of all vertices.
+  // Adds a frame. xyz: [num_vertices][3].
   virtual std::optional<OutputError> add_frame(std::vector<float> xyz) = 0;
 
-  // Of the file, as messages call it.
+  // Returns the name of the file in messages.
   std::string name() const;
   void remark(const std::string& text) { remarks_.push_back(name() + ": " + text); }
-  // Warns of more than viewers can hold.
+  // Warns of more targets than viewers support.
   void warn_of_targets(std::size_t num_targets, const char* remedy);
   std::optional<OutputError> failure(const GlbDocument& document) const {
     return failure_of(document, file_.path(), options_.limit);
@@ -56,7 +56,7 @@ class GltfSink : public FrameSink {
   std::uint32_t written_ = 0;
 };
 
-// Bones, or whatever GltfMotion::kAuto chooses.
+// Makes a sink that writes bones, or chooses the method (GltfMotion::kAuto).
 std::unique_ptr<FrameSink> make_skin_sink(SinkOptions options, OutputFile file);
 
 }  // namespace rlpc

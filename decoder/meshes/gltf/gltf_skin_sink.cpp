@@ -13,14 +13,15 @@ namespace {
 
 using std::to_string;
 
-// Places, keys and maps of a bone in a frame.
+// Memory of places, keys and maps of a bone in a frame.
 constexpr std::uint64_t kSkinBytesOfBone = 512;
 constexpr std::size_t kMostJointsShown = 256;
-// fixed: a price. Where bones leave N times the error of the stream, N > 1, frames may take N
-// times as many times their bytes. Half or twice of it choose bones for the same 14 streams.
+// fixed: a price. If the residual of bones is N > 1 times the error of the stream, frames may
+// take N times this many times their bytes. Half and twice choose bones for the same 14
+// streams.
 constexpr double kMostTimes = 4;
 
-// The poses of the frames so far.
+// Poses of the frames so far.
 class Poses {
  public:
   explicit Poses(std::uint64_t max_bytes) : left_(max_bytes) {}
@@ -43,7 +44,7 @@ class Poses {
     }
   }
 
-  // Why there is no skeleton; empty: there is one.
+  // Returns why the frames have no skeleton; empty if they have one.
   std::string why_none() const {
     if (is_full_) return "the bones need more memory than is allowed (--max-memory)";
     if (!uses_.empty()) return "";
@@ -51,7 +52,7 @@ class Poses {
            "encode with rlpcenc --profile main";
   }
 
-  // The skeleton of most frames, and its places.
+  // Moves the skeleton of most frames and its places to `source`.
   void take(SkinSource& source) {
     source.skeleton = std::ranges::max_element(uses_, {}, &Use::frames)->skeleton;
     for (std::optional<SkeletonPose>& pose : poses_) {
@@ -157,8 +158,8 @@ class GltfSkinSink final : public GltfSink {
     return {options().max_targets, options().max_skin_bytes - bytes_of_frames};
   }
 
-  // Whether to write a morph target for each frame instead of bones. Never more of them than
-  // viewers hold, however few bytes these take.
+  // Returns whether to write a morph target per frame instead of bones: never more of them than
+  // viewers support, however few bytes they take.
   bool frames_are_better(const GlbDocument& document, const GlbSkin& skin) const {
     if (num_moving_ > kMostTargetsShown) return false;
     const double times = static_cast<double>(morph_bytes_) /
@@ -167,7 +168,7 @@ class GltfSkinSink final : public GltfSink {
                           times <= kMostTimes * skin.error.rms / skin.stream_rms);
   }
 
-  // Of a frame as a morph target, nearly; 0: it is equal to the first.
+  // Returns about the bytes of a frame as a morph target; 0 if it equals the first frame.
   std::uint64_t target_bytes(const std::vector<float>& xyz) const {
     const std::vector<float>& base = source_.frames[0];
     std::uint64_t moving = 0;
@@ -191,11 +192,11 @@ class GltfSkinSink final : public GltfSink {
     return finish_morph(document, morph);
   }
 
-  std::optional<SkeletonPose> pose_;  // of the next frame
+  std::optional<SkeletonPose> pose_;  // pose of the next frame
   Poses poses_;
   SkinSource source_;
-  std::uint64_t morph_bytes_ = 0;  // of a morph target for each frame
-  std::size_t num_moving_ = 0;     // frames that need one
+  std::uint64_t morph_bytes_ = 0;  // bytes of the morph targets of all frames
+  std::size_t num_moving_ = 0;     // number of frames that need one
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Principal components of the moves, in blocks: each is made from what the blocks before it
-// leave, and thus also of their rounding.
+// Principal components of the moves, in blocks: each is made from the residual of the previous
+// blocks, including their rounding.
 #include "decoder/meshes/gltf/principal_shapes.h"
 
 #include <algorithm>
@@ -15,23 +15,22 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::MatrixXf;
 
-// Frames and vertices from which a block is made: all, or so many at equal distances, others
-// each time.
+// Numbers of frames and vertices from which a block is made: all, or as many at equal
+// distances, different ones for each block.
 constexpr Index kMostFrames = 256;
 constexpr Index kMostVertices = 2048;
 constexpr Index kTargetsOfBlock = 16;
-constexpr Index kRows = 4096;  // multiplied at a time
+constexpr Index kRows = 4096;  // rows multiplied at a time
 
-// A target leaves out vertices that it would move by less than this part of the RMS that is
-// aimed at, as sparse accessors take fewer bytes; but no more of them than make up the other
-// part of its squares, so that each target brings the moves nearer. Other targets make up for
-// some. With half of the tolerance, 0.25 saves 15 to 25 % of files with many targets; with 0.2
-// or 0.35, 1 to 5 % less or more, depending on the model; with 0.5, targets may become twice as
-// many.
+// Part of the RMS that is aimed at: a target leaves out vertices that it would move by less, as
+// sparse accessors take fewer bytes; but no more of them than make up the other part of its
+// squares, so that each target reduces the residual. Other targets compensate for some. With
+// half of the tolerance, 0.25 saves 15 to 25 % of files with many targets; 0.2 or 0.35 save 1
+// to 5 % less or more, depending on the model; 0.5 may double the number of targets.
 constexpr double kThinned = 0.25;
 constexpr double kMostThinned = 0.2;
 
-// Index `i` of `count` out of `total`.
+// Returns index `i` of `count` out of `total`.
 Index chosen(Index i, Index count, Index total, Index number) {
   return count == total ? i : (i * total + number % count) / count;
 }
@@ -55,7 +54,7 @@ MatrixXf some_vertices(const MatrixXf& moves, Index number) {
   return some;
 }
 
-// a^T b, summed in double.
+// Returns a^T b, summed in double.
 MatrixXd products_of(const MatrixXf& a, const MatrixXf& b) {
   MatrixXd products = MatrixXd::Zero(a.cols(), b.cols());
   for (Index first = 0; first < a.rows(); first += kRows) {
@@ -66,7 +65,7 @@ MatrixXd products_of(const MatrixXf& a, const MatrixXf& b) {
   return products;
 }
 
-// Columns that together contain most of the moves.
+// Returns columns that together contain most of the moves.
 MatrixXf principal_columns(const MatrixXf& moves, Index number) {
   const MatrixXf some = some_columns(moves, number);
   const MatrixXf fewer = some_vertices(some, number);
@@ -75,10 +74,10 @@ MatrixXf principal_columns(const MatrixXf& moves, Index number) {
   return some * solver.eigenvectors().rightCols(count).rowwise().reverse().cast<float>();
 }
 
-// The unit of targets whose weights are at most 1 where they move a vertex this far.
+// Returns the unit of targets that move a vertex at most this far with a weight of 1.
 float unit_of(float farthest) { return farthest <= 1 ? 1.0F / 127 : 1.0F; }
 
-// Rounds a column to bytes of a unit; the largest is 127. False if all are zero.
+// Rounds a column to bytes of a unit; the largest is 127. Returns false if all are zero.
 bool round_to_bytes(Eigen::Ref<Eigen::VectorXf> column, float unit) {
   const float largest = column.cwiseAbs().maxCoeff();
   if (!(largest > 0)) return false;
@@ -107,10 +106,10 @@ void thin_out(Eigen::Ref<Eigen::VectorXf> column, double length) {
   }
 }
 
-// The size of a file with the targets so far.
+// Size of a file with the targets so far.
 class Budget {
  public:
-  // price: null: only the number of targets counts.
+  // price: null if only the number of targets counts.
   Budget(const TargetPrice* price, const MatrixXf& moves, bool has_short_weights)
       : price_(price),
         num_vertices_(static_cast<double>(moves.rows()) / 3),
@@ -121,9 +120,9 @@ class Budget {
     of_target_ = kVertexBytes * price_->written_vertices * num_vertices_ + weights_;
   }
 
-  // What is made small, the first number first: by what squares exceed those of the other
-  // errors; bytes times errors, squared, or without a price, minus the number of targets.
-  // count: of further targets; left: squares of what they leave.
+  // Returns numbers to minimise, the first one first: the excess of squares over those of the
+  // other errors; and the square of bytes times errors or, without a price, minus the number of
+  // targets. count: number of further targets; left: squares of their residual.
   std::array<double, 2> loss(Index count, double left) const {
     if (price_ == nullptr) return {0, -static_cast<double>(count)};
     const double bytes = bytes_ + static_cast<double>(count) * of_target_;
@@ -132,7 +131,7 @@ class Budget {
     return {std::max(0.0, own - other), bytes * bytes * (other + own)};
   }
 
-  // Further ones are taken to be like these.
+  // Adds targets; further targets are assumed to be similar.
   void add(const MatrixXf& targets) {
     if (price_ == nullptr) return;
     const auto count = static_cast<double>(targets.cols());
@@ -150,18 +149,18 @@ class Budget {
   }
 
  private:
-  static constexpr double kVertexBytes = 4;        // three, and one to fill up
-  static constexpr double kSparseVertexBytes = 5;  // with an index of 16 bits
+  static constexpr double kVertexBytes = 4;        // three values and padding
+  static constexpr double kSparseVertexBytes = 5;  // three values and an index of 16 bits
 
   const TargetPrice* price_;
   double num_vertices_;
   double num_frames_;
-  double weights_;  // of a target, bytes
+  double weights_;  // bytes of the weights of a target
   double bytes_ = 0;
   double of_target_ = 0;
 };
 
-// The RMS that shapes are to leave, and the one by which they are thinned out.
+// RMS of the residual to aim at, and RMS by which shapes are thinned out.
 struct Aim {
   double rms;
   double thinned;
@@ -186,7 +185,7 @@ PrincipalShapes shapes_of(MatrixXf& moves, const Aim& aim, std::size_t max_targe
     Index room = 0;
     const Index columns = std::min(block.cols(), most - shapes.targets.cols());
     while (room < columns && round_to_bytes(block.col(room), unit)) ++room;
-    // The fewest of the block that are enough, or as many as are worth it.
+    // Keeps as few shapes of the block as suffice, or as many as are worth their price.
     block.conservativeResize(Eigen::NoChange, room);
     const MatrixXd squares = products_of(block, block);
     const MatrixXd products = products_of(block, moves);

@@ -1,5 +1,5 @@
-// The joints are fitted in turn, each to what the others leave of its vertices (after Le and
-// Deng 2012), several times.
+// Fits the joints in turn, several times, each to the residual of the others at its vertices
+// (after Le and Deng 2012).
 #include "decoder/meshes/gltf/skin_fit.h"
 
 #include <cstddef>
@@ -12,8 +12,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kMostSweeps = 8;
-constexpr double kEnoughGain = 0.98;  // of the sum of squares, in a sweep
-// How much a joint without enough vertices to tell its rotation keeps the one it has.
+constexpr double kEnoughGain = 0.98;  // ratio of the sums of squares after and before a sweep
+// Weight with which a joint with too few vertices to determine its rotation keeps the old one.
 constexpr double kInertia = 1e-4;
 
 struct Member {
@@ -25,7 +25,7 @@ Vector3d moved(const JointMap& map, const Vector3d& p) {
   return map.leftCols<3>() * p + map.col(3);
 }
 
-// Sums for the rigid motion from weighted pairs of points.
+// Computes a rigid motion from sums over weighted pairs of points.
 class RigidFit {
  public:
   void add(const Vector3d& from, const Vector3d& to, double weight) {
@@ -36,7 +36,7 @@ class RigidFit {
     spread_ += weight * from.squaredNorm();
   }
 
-  // Near `before` where the pairs say nothing.
+  // Returns the map, near `before` where the pairs do not determine it.
   JointMap map(const JointMap& before) const {
     if (weight_ <= 0) return before;
     const Vector3d from = from_ / weight_;
@@ -78,7 +78,7 @@ class PoseFit {
     }
   }
 
-  // maps: a guess at first.
+  // Fits the maps. maps: initial guess, then result.
   void fit(const std::vector<float>& xyz, JointMaps& maps) {
     start(xyz, maps);
     double before = squares(xyz);
@@ -95,7 +95,7 @@ class PoseFit {
     return {xyz[3 * v], xyz[3 * v + 1], xyz[3 * v + 2]};
   }
 
-  // As if each joint alone moved its vertices.
+  // Fits each joint as if it alone moved its vertices.
   void start(const std::vector<float>& xyz, JointMaps& maps) {
     places_.assign(rest_.size(), Vector3d::Zero());
     for (std::size_t j = 0; j < maps.size(); ++j) {
@@ -133,7 +133,7 @@ class PoseFit {
 
   std::vector<std::vector<Member>> members_;  // [joint]
   std::vector<Vector3d> rest_;
-  std::vector<Vector3d> places_;  // of the vertices, by the joints as they are
+  std::vector<Vector3d> places_;  // [vertex] place by the current maps
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Places of joints in frames for which the stream has none: those of groups of frames that have
-// other bones, or no bones.
+// Fits places of joints in frames for which the stream has none: GOFs with other bones, or no
+// bones.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@
 
 namespace rlpc {
 
-// Sets the places that are empty to those that fit the frame best; places [frame][joint], of
-// which at least one is there.
+// Sets empty places to those that fit their frame best. places: [frame][joint], at least one
+// frame of which is not empty.
 void fit_places(const Skeleton& skeleton, const Grid& grid, const SkinInfluences& influences,
                 ShownFrames frames, std::vector<JointPlaces>& places);
 

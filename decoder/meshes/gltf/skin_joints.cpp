@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 constexpr double kAxisUnit = 1.0 / (std::int64_t{1} << 30);
 constexpr double kOriginFractions = 16;
 
-// How far from each other two rotations move a point at distance 1, nearly.
+// Returns about the distance between the images of a point at distance 1 under two rotations.
 double distance(const Quaterniond& a, const Quaterniond& b) {
   return 2 * std::min((a.coeffs() - b.coeffs()).norm(), (a.coeffs() + b.coeffs()).norm());
 }
@@ -41,14 +41,14 @@ void read(const float* values, Quaterniond& q) {
 }
 void read(const float* values, Vector3d& p) { p = {values[0], values[1], values[2]}; }
 
-// Rotations as 16-bit integers: how far they may turn from what they are, at most.
+// Largest error of rotations as 16-bit integers.
 constexpr double kShortUnit = 1.0 / 32767;
 constexpr double kShortAngle = 2 * kShortUnit;
 
 bool fits_shorts(const Quaterniond&, double tolerance) { return tolerance >= kShortAngle; }
 bool fits_shorts(const Vector3d&, double) { return false; }
 
-// JSON of an accessor of times.
+// JSON bytes of an accessor of times.
 constexpr std::size_t kTimesJsonBytes = 130;
 
 template <class T>
@@ -57,7 +57,7 @@ bool is_still(std::span<const T> series, const T& value, double tolerance) {
                              [&](const T& x) { return distance(x, value) <= tolerance; });
 }
 
-// The value that stands for all of a series, if it is nearly still: that of its middle.
+// Returns the value that represents a nearly constant series: that of its middle.
 template <class T>
 JointTrack keys_of(std::span<const T> series, double tolerance) {
   JointTrack track;
@@ -89,7 +89,7 @@ JointTrack keys_of(std::span<const T> series, double tolerance) {
 }
 
 // Takes the tracks of all clips and the value of the node from a series over all frames.
-// tracks: returns that of a clip.
+// tracks: returns the track of a clip.
 template <class T, class Tracks>
 std::vector<float> add_tracks(std::span<const T> series, std::span<const Clip> spans,
                               double tolerance, const Tracks& tracks) {

@@ -1,5 +1,4 @@
-// Joints of a skin: their places in each frame, relative to their parents, as keys of
-// animations.
+// Joints of a skin: their places in each frame relative to their parents, as animation keys.
 #pragma once
 
 #include <array>
@@ -15,7 +14,7 @@
 
 namespace rlpc {
 
-// Rotation and origin, in units.
+// Rotation and origin of a joint, in units of the input.
 struct JointPlace {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
@@ -31,7 +30,7 @@ struct JointPlace {
 };
 
 using JointPlaces = std::vector<JointPlace>;  // [joint]
-// The map of a joint from the rest shape, rows of a matrix.
+// Map of a joint from the rest shape, as rows of a matrix.
 using JointMap = Eigen::Matrix<double, 3, 4>;
 using JointMaps = std::vector<JointMap>;  // [joint]
 
@@ -39,7 +38,7 @@ JointPlace joint_place(const BonePlace& place, const Grid& grid);
 JointMap map_of_place(const JointPlace& place);
 
 // Keys of a track within a clip: frames of the clip, and `width` numbers for each. No keys: the
-// value of the node throughout.
+// value of the node, constantly.
 struct JointTrack {
   std::vector<std::uint32_t> keys;
   std::vector<float> values;
@@ -59,12 +58,11 @@ struct JointMotion {
 
   std::vector<Node> nodes;                          // [joint], as in frame 0
   std::vector<std::vector<OfClip>> clips;           // [clip][joint]
-  std::vector<std::array<float, 16>> inverse_bind;  // [joint], columns
+  std::vector<std::array<float, 16>> inverse_bind;  // [joint], in column-major order
 };
 
-// Frames of a track that have to be keys, so that values between keys deviate from what is
-// interpolated linearly by no more than is tolerated. is_near(a, b): for all frames between a
-// and b.
+// Returns the frames of a track that must be keys, so that linear interpolation between keys
+// stays within the tolerance. is_near(a, b): whether it does for all frames between a and b.
 template <class IsNear>
 std::vector<std::uint32_t> needed_keys(std::uint32_t num_frames, const IsNear& is_near) {
   constexpr std::uint32_t kLongest = 256;
@@ -78,17 +76,19 @@ std::vector<std::uint32_t> needed_keys(std::uint32_t num_frames, const IsNear& i
   return keys;
 }
 
-// The keys, or all frames where these take fewer bytes: tracks with the same keys share times.
+// Returns the keys, or all frames if these take fewer bytes: tracks with the same keys share
+// times.
 std::vector<std::uint32_t> keys_to_write(std::vector<std::uint32_t> keys,
                                          std::uint32_t num_frames, std::size_t bytes_of_key);
 
-// places [frame][joint]; reach [joint]: how far from its origin a joint moves vertices;
-// tolerance: of the motion at that distance, in units.
+// Makes the tracks of the joints. places: [frame][joint]; reach: [joint], largest distance of
+// the vertices that a joint moves from its origin; tolerance: error of the motion at that
+// distance, in units of the input.
 JointMotion joint_motion(const Skeleton& skeleton, const Grid& grid,
                          std::span<const JointPlaces> places, std::span<const double> reach,
                          std::span<const Clip> spans, double tolerance);
 
-// The maps as viewers make them from the keys, in a frame of a clip.
+// Returns the maps that viewers compute from the keys, in a frame of a clip.
 JointMaps joint_maps(const JointMotion& motion, std::size_t clip, std::uint32_t frame);
 
 }  // namespace rlpc

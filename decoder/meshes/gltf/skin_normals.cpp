@@ -1,8 +1,7 @@
-// What morph targets change of the normals is taken from the surface: the normals of a frame
-// minus those of the same frame with bones alone. Bones turn normals as they are, and the
-// surface has normals of its own, so that the two differ by several degrees where nothing is
-// missing. Where they differ by much more, as where bones turn a part of the surface over or
-// squeeze it, targets make up for the whole difference.
+// Morph targets of normals follow the surface: they hold the normals of a frame minus those of
+// the same frame with bones alone. Normals turned by bones and normals of the surface differ by
+// several degrees even without a residual. Where they differ by much more, as where bones turn
+// over or squeeze a part of the surface, targets hold the whole difference.
 #include "decoder/meshes/gltf/skin_normals.h"
 
 #include <algorithm>
@@ -23,28 +22,27 @@ using Eigen::MatrixXf;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// Of the determinant of a map, relative to its columns: it is singular below.
+// Determinant of a map, relative to its columns, below which it counts as singular.
 constexpr double kSingular = 1e-6;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// The RMS that targets may leave. For 1 degree, targets of normals take 2 to 3 times the bytes,
-// and bring normals nearer to those of the source by at most 0.1 degrees.
+// RMS residual of targets. For 1 degree, targets of normals take 2 to 3 times the bytes, and
+// reduce the error against the source by at most 0.1 degrees.
 constexpr double kToleratedAngle = 2 * kDegree;
 
-// Angles between what bones make of normals and what they are to be: below the first, the
-// difference is that of two kinds of normals; above the second, it is an error. In between, a
-// part of it is, so that nothing jumps.
+// Angles between normals turned by bones and wanted normals: below the first, the difference is
+// due to the two kinds of normals; above the second, it is an error; in between, a part of it
+// is, for continuity.
 constexpr double kKindsDiffer = 10 * kDegree;
 constexpr double kBonesFail = 20 * kDegree;
 
-// Vertices that targets leave by more than this in a frame get targets of their own, which
-// leave less.
+// Residual of a vertex in a frame above which it gets additional targets.
 constexpr double kFarOff = 30 * kDegree;
 constexpr double kTolerableThere = 6 * kDegree;
 
-// Of the largest area around a vertex: normals of a frame with less do not count; a frame with
-// more is as good as any to take the normal of the rest shape from.
+// Part of the largest area around a vertex: normals of frames with less do not count; frames
+// with more can provide the normal of the rest shape.
 constexpr float kVisible = 1e-4F;
 constexpr float kEnough = 0.25F;
 
@@ -60,7 +58,7 @@ Matrix3d back_from(const JointMap& map) {
   return is_singular ? Matrix3d::Identity() : Matrix3d(turn.inverse());
 }
 
-// What joints make of each vertex of the stream in a frame.
+// Maps of the vertices of the stream by joints in a frame.
 class JointFrame {
  public:
   JointFrame(const SkinInfluences& influences, const JointMaps& maps)
@@ -68,7 +66,7 @@ class JointFrame {
     for (const JointMap& map : maps) back_.push_back(back_from(map));
   }
 
-  // The positions of the vertices by joints alone.
+  // Returns the positions of the vertices by joints alone.
   std::vector<float> moved(std::span<const float> rest) const {
     std::vector<float> xyz(rest.size());
     for (std::size_t v = 0; v < rest.size() / 3; ++v) {
@@ -81,7 +79,7 @@ class JointFrame {
     return xyz;
   }
 
-  // What turns normals of vertex v back to the rest shape.
+  // Returns the matrix that turns normals of vertex v back to the rest shape.
   Matrix3d back(std::uint32_t v) const {
     const auto joint = only_joint(influences_, v);
     return joint ? back_[*joint] : back_from(map_of(influences_, v, maps_));
@@ -93,12 +91,12 @@ class JointFrame {
   std::vector<Matrix3d> back_;  // [joint]
 };
 
-// The unit vector in the direction of a normal, turned back.
+// Returns the unit vector in the direction of a normal, turned back.
 Vector3f at_rest(const Matrix3d& back, const float* normal) {
   return (back * Vector3d(normal[0], normal[1], normal[2])).normalized().cast<float>();
 }
 
-// Of output vertices, the areas around them in a frame.
+// Returns the area around each output vertex in a frame.
 std::vector<float> areas_of(const GlbMesh& mesh, std::span<const float> xyz) {
   std::vector<float> areas(mesh.vertex.size(), 0.0F);
   const auto point = [&](std::uint32_t i) {
@@ -115,7 +113,7 @@ std::vector<float> areas_of(const GlbMesh& mesh, std::span<const float> xyz) {
   return areas;
 }
 
-// Whether one joint moves a triangle.
+// Returns whether a single joint moves a triangle.
 bool is_rigid(const SkinInfluences& influences, const GlbMesh& mesh, const Triangle& t) {
   const auto joint = only_joint(influences, mesh.vertex[t[0]]);
   return joint && std::ranges::all_of(t, [&](std::uint32_t i) {
@@ -123,8 +121,8 @@ bool is_rigid(const SkinInfluences& influences, const GlbMesh& mesh, const Trian
          });
 }
 
-// Adds all vertices that share a triangle with those that are marked: the second triangle of a
-// polygon counts at vertices that it does not have.
+// Marks all vertices that share a triangle with marked ones: the second triangle of a polygon
+// counts at vertices that it does not have.
 void widen(const GlbMesh& mesh, std::vector<bool>& is_marked) {
   const std::vector<bool> before = is_marked;
   for (const GlbMesh::Part& part : mesh.parts) {
@@ -138,16 +136,16 @@ void widen(const GlbMesh& mesh, std::vector<bool>& is_marked) {
   }
 }
 
-// A triangle that one joint moves, and how far frames may move its edges without turning
-// normals visibly.
+// Triangle that a single joint moves, and the distance by which frames may move its edges
+// without turning normals visibly.
 struct Steady {
-  Triangle vertices;  // of the stream
+  Triangle vertices;  // vertices of the stream
   float square = 0.0F;
   bool is_steady = true;
 };
 
-// Normals turn by no more than half of what is tolerated, as they are compared with those of
-// another frame: edges may move by that part of the smallest height.
+// Returns the square of that distance. Normals may turn by half of the tolerance, as they are
+// compared with those of another frame: edges may move by that part of the smallest height.
 float square_of_slack(const std::array<Vector3f, 3>& p) {
   const Vector3f a = p[1] - p[0];
   const Vector3f b = p[2] - p[0];
@@ -158,7 +156,7 @@ float square_of_slack(const std::array<Vector3f, 3>& p) {
   return slack * slack;
 }
 
-// missing: three rows for each vertex, a column for each frame.
+// Marks vertices whose normals may turn. missing: [3 * vertex][frame].
 void mark_unsteady(const MatrixXf& missing, std::span<Steady> triangles) {
   for (Index f = 0; f < missing.cols(); ++f) {
     const float* const moves = missing.col(f).data();
@@ -195,8 +193,7 @@ class SkinNormalMaker {
 
   const std::vector<Vector3f>& rest() const { return wanted_; }
 
-  // What the normals of all frames have to move by: three rows for each output vertex of
-  // `moving`.
+  // Returns the moves of the normals in all frames: three rows per output vertex of `moving`.
   MatrixXf moves(const std::vector<Index>& moving) const {
     MatrixXf moves(static_cast<Index>(3 * moving.size()), static_cast<Index>(frames_.size()));
     for_ranges(frames_.size(), kFramesTogether, [&](std::size_t first, std::size_t end) {
@@ -212,7 +209,7 @@ class SkinNormalMaker {
  private:
   struct Surfaces {
     FrameNormals& whole;
-    FrameNormals& bones;  // where these bend them: others turn with their joint
+    FrameNormals& bones;  // normals where several bones bend them; others turn with their joint
   };
 
   FrameNormals normals_where(const std::vector<bool>& of_vertices) const {
@@ -254,8 +251,8 @@ class SkinNormalMaker {
     }
   }
 
-  // The frame that the normal of each vertex is taken from: the first one, or where that hardly
-  // has a surface there, the one with the largest.
+  // Finds the frame that the normal of each vertex is taken from: the first frame or, if it has
+  // almost no surface there, the frame with the largest area.
   void find_best_frames() {
     std::vector<float> first;
     for (std::size_t f = 0; f < frames_.size(); ++f) {
@@ -300,11 +297,11 @@ class SkinNormalMaker {
   const NormalVertices& vertices_;
   std::vector<float> largest_;       // [output vertex], area in any frame
   std::vector<std::uint32_t> best_;  // [output vertex], frame
-  std::vector<Vector3f> wanted_;     // [output vertex], in that frame, at rest
-  std::vector<Vector3f> apart_;      // from those of the surface that joints alone make
+  std::vector<Vector3f> wanted_;     // [output vertex], normal of that frame, turned back
+  std::vector<Vector3f> apart_;      // difference from the surface by joints alone
 };
 
-// Some vertices of a matrix with three rows for each.
+// Returns the rows of some vertices of a matrix with three rows per vertex.
 MatrixXf rows_of(const MatrixXf& all, const std::vector<Index>& vertices) {
   MatrixXf some(static_cast<Index>(3 * vertices.size()), all.cols());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -313,7 +310,8 @@ MatrixXf rows_of(const MatrixXf& all, const std::vector<Index>& vertices) {
   return some;
 }
 
-// Vertices that move by more than `least` in a frame. Of the others, adds the squares.
+// Returns the vertices that move by more than `least` in a frame; adds the squares of the
+// others to other_squares.
 std::vector<Index> moving_vertices(const MatrixXf& moves, double least, double& other_squares) {
   std::vector<Index> vertices;
   for (Index v = 0; v < moves.rows() / 3; ++v) {
@@ -327,7 +325,7 @@ std::vector<Index> moving_vertices(const MatrixXf& moves, double least, double& 
   return vertices;
 }
 
-// Adds targets that move some vertices of all.
+// Adds targets that move only some vertices.
 void append(const PrincipalShapes& some, const std::vector<Index>& vertices,
             PrincipalShapes& all) {
   const Index first = all.targets.cols();
@@ -344,8 +342,8 @@ void append(const PrincipalShapes& some, const std::vector<Index>& vertices,
   all.weights.bottomRows(count) = some.weights;
 }
 
-// Targets for all moves, then for those that are far off all the same. Vertices that hardly
-// move are left as they are. moving: those out of `count` vertices that `moves` belong to.
+// Finds targets for all moves, then for large residuals. Vertices that barely move get none.
+// moving: vertices of `moves`, out of `count`.
 PrincipalShapes targets_for(MatrixXf moves, const std::vector<Index>& moving, Index count,
                             std::size_t max_targets) {
   PrincipalShapes shapes;

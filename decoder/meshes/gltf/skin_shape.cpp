@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Against vertices that their joints squeeze flat: what is missing there is not all added.
+// Damping for vertices that their joints squeeze flat, which get only a part of the residual.
 constexpr double kDamping = 1e-3;
 
 constexpr std::size_t kVerticesTogether = 256;  // fixed: on one thread
@@ -23,7 +23,7 @@ Vector3d vector_at(std::span<const float> xyz, std::size_t v) {
   return {xyz[3 * v], xyz[3 * v + 1], xyz[3 * v + 2]};
 }
 
-// Solves for what has to be added at rest so that a map moves it by what is missing.
+// Solves for the addition at rest that a map turns into the residual.
 class MoveSolver {
  public:
   explicit MoveSolver(const JointMap& map) {
@@ -44,12 +44,12 @@ void set_vector(std::span<float> xyz, std::size_t v, const Vector3d& p) {
 }
 
 struct FrameError {
-  double squares = 0;  // of distances
+  double squares = 0;  // sum of squared distances
   double largest_square = 0;
-  double spread = 0;  // squares of distances from the centre
+  double spread = 0;  // sum of squared distances from the centre
 };
 
-// xyz: the rest shape of the frame; wanted: its positions.
+// Returns the error of a frame. xyz: its rest shape; wanted: its positions.
 FrameError frame_error(const SkinInfluences& influences, const JointMaps& maps,
                        std::span<const float> xyz, std::span<const float> wanted) {
   FrameError error;
@@ -86,7 +86,7 @@ SkinInfluences written_influences(const Skeleton& skeleton, int whole) {
       weights[k] = whole * list[k].weight / total;
       left -= weights[k];
     }
-    weights[0] += left;  // of rounding
+    weights[0] += left;  // rounding error
     list.resize(kJointsOfVertex);
     for (std::size_t k = 0; k < kJointsOfVertex; ++k) {
       written.joints.push_back(list[k].bone);
@@ -126,7 +126,7 @@ std::vector<float> best_rest(const SkinInfluences& influences, std::span<const J
                              ShownFrames frames) {
   const std::size_t num_vertices = frames[0].size() / 3;
   std::vector<float> rest(3 * num_vertices);
-  // What vertices that one joint moves have in common.
+  // Sums that all vertices of a single joint share.
   std::vector<Matrix3d> squares_of_joint(maps[0].size(), Matrix3d::Zero());
   for (std::size_t j = 0; j < squares_of_joint.size(); ++j) {
     for (const JointMaps& of_frame : maps) {

@@ -1,4 +1,4 @@
-// The rest shape of a skin, and the morph targets for what its joints leave.
+// Rest shape of a skin, and the residual of its joints.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@
 
 namespace rlpc {
 
-inline constexpr std::size_t kJointsOfVertex = 4;  // what all viewers support
+inline constexpr std::size_t kJointsOfVertex = 4;  // supported by all viewers
 
-// The sum of the weights of a vertex, of 8 or of 16 bits.
+// Sum of the weights of a vertex with 8 or 16 bits.
 inline constexpr int kByteWhole = 255;
 inline constexpr int kShortWhole = 65535;
 
@@ -25,31 +25,31 @@ inline constexpr int kShortWhole = 65535;
 struct SkinInfluences {
   int whole = kShortWhole;
   std::vector<std::uint16_t> joints;   // [num_vertices][kJointsOfVertex]
-  std::vector<std::uint16_t> weights;  // likewise
+  std::vector<std::uint16_t> weights;  // [num_vertices][kJointsOfVertex]
 };
 
-// Of more than kJointsOfVertex influences, the largest remain, in proportion.
+// Rounds the influences; of more than kJointsOfVertex, keeps the largest, rescaled.
 SkinInfluences written_influences(const Skeleton& skeleton, int whole);
 
-// RMS of how far apart two ways to write influences move the vertices of a frame; maps: from it
-// to another.
+// Returns the RMS distance of the vertices of a frame as moved by two ways to write influences.
+// maps: from that frame to another.
 double rms_between(const SkinInfluences& a, const SkinInfluences& b, const JointMaps& maps,
                    std::span<const float> xyz);
 
-// The joint that moves a vertex alone, if there is one.
+// Returns the joint that moves a vertex alone, if any.
 std::optional<std::size_t> only_joint(const SkinInfluences& influences, std::size_t vertex);
 
-// How the joints map a vertex in a frame.
+// Returns the map of a vertex by the joints in a frame.
 JointMap map_of(const SkinInfluences& influences, std::size_t vertex, const JointMaps& maps);
 
-// Frames as floats, [frame][num_vertices][3], as they are to be shown.
+// Frames to show, as floats, [frame][num_vertices][3].
 using ShownFrames = std::span<const std::vector<float>>;
 
-// The rest positions from which the joints get nearest to all frames; maps [frame].
+// Returns the rest positions from which the joints fit all frames best. maps: [frame].
 std::vector<float> best_rest(const SkinInfluences& influences, std::span<const JointMaps> maps,
                              ShownFrames frames);
 
-// What has to be added to the rest positions in each frame, one column for each.
+// Returns the residual to add to the rest positions in each frame, [3 * num_vertices][frame].
 Eigen::MatrixXf missing_moves(const SkinInfluences& influences, std::span<const JointMaps> maps,
                               std::span<const float> rest, ShownFrames frames);
 

@@ -12,11 +12,11 @@ namespace {
 
 using Eigen::Index;
 
-// How far keys that are left out may turn normals, RMS: half a degree or so. Half or twice of
-// it change files by 0.01 % (cesium-man) at most.
+// RMS by which dropping keys may turn normals: about half a degree. Half and twice change files
+// by at most 0.01 % (cesium-man).
 constexpr double kNormalTolerance = 0.01;
 
-// RMS of what a weight of 1 moves.
+// Returns the RMS of the moves by a weight of 1.
 Eigen::VectorXf lengths_of(const PrincipalShapes& shapes) {
   return shapes.targets.colwise().norm() /
          std::sqrt(std::max(1.0F, static_cast<float>(shapes.targets.rows()) / 3));

@@ -1,4 +1,4 @@
-// The morph targets of a skin, and their weights over time.
+// Morph targets of a skin, and their weights over time.
 #pragma once
 
 #include <cstddef>
@@ -14,34 +14,36 @@
 
 namespace rlpc {
 
-// Of positions first, then of normals. Each of them moves one of the two: what is principal for
-// one is not for the other, and viewers add them up all the same.
+// Targets of positions, then targets of normals. Each moves only one of the two, as their
+// principal shapes differ and viewers add all targets up.
 struct SkinTargets {
-  PrincipalShapes places;   // of the vertices of the stream
-  PrincipalShapes normals;  // of output vertices
+  PrincipalShapes places;   // targets of the vertices of the stream
+  PrincipalShapes normals;  // targets of output vertices
 
   std::size_t count() const {
     return static_cast<std::size_t>(places.targets.cols() + normals.targets.cols());
   }
 };
 
-// The weights in a clip: keys, frames of the clip, and the weights of all targets for each.
+// Weights in a clip: keys, which are frames of the clip, and the weights of all targets at
+// each.
 struct TargetTrack {
   std::vector<std::uint32_t> keys;
   Eigen::MatrixXf weights;  // [target][key]
 };
 
-// Without keys between which the weights change linearly; tolerance: RMS of a vertex.
+// Returns the track of a clip without keys that interpolation reproduces. tolerance: RMS error
+// of a vertex.
 TargetTrack target_track(const SkinTargets& targets, const Clip& clip, double tolerance);
 
-// The weights of the targets of positions as viewers interpolate them, [target][frame]; of a
-// frame in several clips, those of the first.
+// Returns the weights of the targets of positions as viewers interpolate them, [target][frame];
+// in a frame of several clips, those of the first clip.
 Eigen::MatrixXf shown_weights(const SkinTargets& targets, std::span<const TargetTrack> tracks,
                               std::span<const Clip> spans);
 
-// The targets of a primitive.
+// Returns the targets of a primitive.
 GltfJson targets_of(const SkinTargets& targets, const GlbMesh& mesh, GlbBuffers& buffers);
-// Their weights in frame 0.
+// Returns the weights of the targets in frame 0.
 GltfJson first_weights(const SkinTargets& targets);
 void add_weights(GlbAnimation& animation, std::uint32_t node, const SkinTargets& targets,
                  const TargetTrack& track, GlbBuffers& buffers);

@@ -1,4 +1,4 @@
-// The frames that --frames or --clip of rlpcdec names.
+// Frames that --frames or --clip of rlpcdec selects.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace rlpc {
 
-// frames: as parse_frame_span() reads it, if no clip is named. clips: those of the stream, of
-// num_frames frames. The error is a message for the user.
+// Returns the selected frames, or a message for the user. frames: see parse_frame_span(); used
+// if `clip` is empty. clips: clips of the stream, which has num_frames frames.
 Result<FrameSpan, std::string> choose_frames(const std::string& frames, const std::string& clip,
                                              std::span<const Clip> clips,
                                              std::uint32_t num_frames);
 
-// The clips, or their parts, that are among the frames of a span, counted from its first frame.
+// Returns the parts of clips within a span of frames, counted from its first frame.
 std::vector<Clip> clips_within(const FrameSpan& span, std::span<const Clip> clips);
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// The frames to be shown: after damage, the last one before it stands for those that are lost.
+// Frames to show: after damage, lost frames repeat the last good one.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,22 @@ namespace rlpc {
 
 class ConcealedFrames {
  public:
-  // The error, the first frame that is lost, and the one with which decoding goes on; none: it
-  // does not.
+  // Receives the error, the first lost frame, and the frame with which decoding resumes; none
+  // if it does not.
   using Report =
       std::function<void(const Error&, std::uint32_t first, std::optional<std::uint32_t> next)>;
 
-  // Frames first to end - 1; the decoder, which must outlive it, is at the first. end: none if
-  // the number of frames is not known. report: null if damage is an error.
+  // Yields frames first to end - 1. decoder: at the first of them; must outlive it. end: none
+  // if the number of frames is unknown. report: null if damage is an error.
   ConcealedFrames(Decoder& decoder, std::uint32_t first, std::optional<std::uint32_t> end,
                   Report report)
       : decoder_(decoder), first_(first), end_(end), report_(std::move(report)), next_(first) {}
 
-  // positions: as the call before left it, since that frame may be needed again. False after
-  // the last frame. Errors: those of the decoder; with a report, only before any frame.
+  // Decodes or repeats a frame. positions: as the previous call left it, as its frame may be
+  // repeated. Returns false after the last frame, or an error of the decoder; with a report,
+  // only before the first frame.
   Result<bool> next(std::span<std::int32_t> positions);
-  // Whether the frame of the last call is lost.
+  // Returns whether the frame of the last call is lost.
   bool is_lost() const { return is_lost_; }
 
  private:

@@ -38,8 +38,8 @@ struct Request {
   DecoderOptions decoder;
 };
 
-// 7.3: binary32 coordinates, x y z of each vertex of each frame, little-endian, without a
-// header.
+// 7.3: writes binary32 coordinates, x y z of each vertex of each frame, little-endian, without
+// a header.
 class F32Sink : public FrameSink {
  public:
   F32Sink(const Grid& grid, OutputFile file) : grid_(grid), file_(std::move(file)) {}
@@ -80,11 +80,11 @@ OutputResult<std::unique_ptr<FrameSink>> open_sink(const std::string& path,
   return open_rlpd_sink(path, std::move(options));
 }
 
-// The result of decoding: an error of the stream, an error of the output, or none.
+// Result of decoding: an error of the stream, an error of the output, or none.
 struct Outcome {
   std::optional<Error> error;
   std::optional<OutputError> output_error;
-  std::uint32_t frames = 0;  // in the output
+  std::uint32_t frames = 0;  // number in the output
 };
 
 Outcome decode_frames(const Request& request) {
@@ -115,8 +115,7 @@ Outcome decode_frames(const Request& request) {
 }
 
 // Decodes all frames, without output, and then writes the attributes. As in the specification,
-// their syntax is checked before the first frame, and what they were predicted from after the
-// last one.
+// their syntax is checked before the first frame, and their predictions after the last one.
 Outcome decode_attributes(const Request& request) {
   Outcome outcome;
   try {

@@ -1,10 +1,10 @@
-// The interface of a decoder to the conformance judge, as arguments of rlpcdec:
+// Interface of a decoder to the conformance judge, as arguments of rlpcdec:
 //
-//   rlpcdec --rlpc-conformance                               what it decodes, as JSON
+//   rlpcdec --rlpc-conformance                               its capabilities, as JSON
 //   rlpcdec decode IN.rlpc OUT.rlpd|OUT.f32 [--max-mem BYTES]
 //
-// OUT holds exactly the frames before an error, and is not written at all if the error comes
-// before the first GOF unit (A.2). The last line of standard error on exit codes 1 to 3 is
+// OUT holds exactly the frames before an error, and is not written if the error precedes the
+// first GOF unit (A.2). The last line of standard error on exit codes 1 to 3 is
 // rlpc-verdict {"rule": ..., "bit": ..., "frame": ...}.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace rlpc {
 
-// The exit code; none if the arguments are not those above.
+// Runs the command and returns its exit code; none if the arguments are not those above.
 std::optional<int> run_conformance_verb(int argc, char** argv);
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// The command line of rlpcdec.
+// Command line of rlpcdec.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -34,10 +34,10 @@ struct DecodeCommand {
   bool is_part() const { return !frames.empty() || !clip.empty(); }
 };
 
-// `command` must outlive the parsing of the command line.
+// Adds the options. `command` must outlive the parsing of the command line.
 void add_decode_options(CLI::App& app, DecodeCommand& command);
 
-// What is wrong with options that were parsed one by one; empty: nothing.
+// Returns what is wrong with the combination of options; empty if nothing is.
 std::string find_usage_error(const CLI::App& app, const DecodeCommand& command);
 
 }  // namespace rlpc

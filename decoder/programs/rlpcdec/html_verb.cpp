@@ -28,8 +28,8 @@ Result<Decoder> look_at(ByteSource& source, const DecoderOptions& options) {
   return Decoder::open(std::make_unique<BorrowedSource>(source), options);
 }
 
-// Decodes the whole stream to report damage after the first GOF. The page is written even so,
-// and shows the damage.
+// Decodes the whole stream to report damage after the first GOF. The page is still written, and
+// shows the damage.
 int check_whole(const std::string& input, Decoder& decoder) {
   std::vector<std::int32_t> positions(3 * std::size_t{decoder.header().num_vertices});
   for (;;) {

@@ -10,17 +10,17 @@
 namespace rlpc {
 
 struct HtmlRequest {
-  std::string input;      // name of the stream; "-": it came from standard input
+  std::string input;      // name of the stream; "-": standard input
   std::string output;     // page to write
   std::string player;     // page of the player; empty: the default location
   std::string reference;  // stream of the same mesh with the same vertex order; empty: none
   DecoderOptions decoder;
-  std::shared_ptr<OutputLimit> limit;  // on the size of the page; null: none
+  std::shared_ptr<OutputLimit> limit;  // limit of the size of the page; null: none
   bool quiet = false;
 };
 
-// Checks the first units of the streams and writes the page. Returns the exit code, which is
-// that of decoding the whole stream.
+// Checks the first units of the streams and writes the page. Returns the exit code of decoding
+// the whole stream.
 int write_html(const HtmlRequest& request, ByteSource& stream);
 
 }  // namespace rlpc

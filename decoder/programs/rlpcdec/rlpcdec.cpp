@@ -47,7 +47,7 @@ int complain(const Options& o, const rlpc::Error& error) {
                   rlpc::exit_code(error.code));
 }
 
-// Whether the frames are decoded as they arrive, their number being unknown.
+// Returns whether frames are decoded as they arrive, because their number is unknown.
 bool is_live(const Options& o, const rlpc::SequenceHeader& header) {
   if (!header.open_end_flag || o.is_part()) return false;
   const rlpc::SinkFormat format = rlpc::sink_format(o.output, o.format);
@@ -57,7 +57,7 @@ bool is_live(const Options& o, const rlpc::SequenceHeader& header) {
   return o.verify_only || !needs_count;
 }
 
-// end: the frame with which decoding goes on; none: it does not.
+// Reports lost frames. end: the frame with which decoding resumes; none if it does not.
 int complain_of_loss(const Options& o, const rlpc::Error& error, std::uint32_t first,
                      std::optional<std::uint32_t> end) {
   std::string lost = "; frames from " + std::to_string(first) + " on are lost";
@@ -78,7 +78,7 @@ struct FrameCounts {
   std::uint32_t decoded = 0;
   std::uint32_t compared = 0;
   std::uint32_t lost = 0;
-  int loss_code = rlpc::kExitDone;  // of the last damage
+  int loss_code = rlpc::kExitDone;  // exit code of the last damage
 };
 
 std::string hashes_text(const Options& o, const rlpc::Decoder& decoder,
@@ -103,7 +103,7 @@ std::string coarse_text(const Options& o, const rlpc::Decoder& decoder) {
          " vertex layers)";
 }
 
-// sink: null if nothing was written.
+// Reports what was decoded. sink: null if nothing was written.
 void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& frames,
             const rlpc::FrameSink* sink) {
   const auto remarks = sink != nullptr ? sink->remarks() : std::vector<std::string>();
@@ -145,7 +145,7 @@ int write_html(const Options& o, rlpc::ByteSource& source) {
   return rlpc::write_html(request, source);
 }
 
-// Returns the exit code of an error that ends it; none: all frames have been written.
+// Writes the frames. Returns the exit code of an error; none if all frames have been written.
 std::optional<int> write_frames(const Options& o, rlpc::Decoder& decoder,
                                 const rlpc::FrameSpan& span, bool live, rlpc::FrameSink* sink,
                                 FrameCounts& frames) {
@@ -177,7 +177,7 @@ std::optional<int> write_frames(const Options& o, rlpc::Decoder& decoder,
     }
     if (!live) bar.show(static_cast<double>(frames.decoded + frames.lost) / count);
   }
-  // What follows the last frame is checked, too.
+  // Also checks the stream after the last frame.
   if (!o.is_part() && !live && frames.loss_code == rlpc::kExitDone) {
     if (const auto more = decoder.next_frame(positions); !more)
       return complain(o, more.error());
@@ -198,8 +198,8 @@ int check_asset_memory(const Options& o, const rlpc::Decoder& decoder, std::stri
                   rlpc::kExitLimit);
 }
 
-// Those that the output holds. Returns the exit code of an error; frames are written all the
-// same.
+// Reads the attributes that the output can hold. Returns the exit code of an error; frames are
+// still written.
 int read_attributes(const Options& o, rlpc::Decoder& decoder, bool live,
                     rlpc::SinkOptions& options) {
   const rlpc::SinkFormat format = rlpc::sink_format(o.output, o.format);

@@ -46,7 +46,7 @@ bool too_many_layers(const ExtractOptions& o, const SliceTotals& after) {
   return after.num_layers > o.cut.max_layers;
 }
 
-// By its place in the stream: most streams have a single rig_idx.
+// Names a rig by its place in the stream: most streams have a single rig_idx.
 std::string name_of(const RigSummary& rig) {
   return "shared rig " + std::to_string(rig.number);
 }
@@ -92,14 +92,14 @@ void print_json(const ExtractOptions& o, const SubStreamExtractor& cutter,
   std::cout << json_text(json, 2) << "\n";
 }
 
-// Of a GOF with temporal layers.
+// Describes the temporal layers of a GOF before and after the cut.
 std::string temporal_text(const SliceTotals& before, const SliceTotals& after) {
   if (before.num_temporal_layers == 1) return {};
   return std::to_string(after.num_temporal_layers) + " of " +
          std::to_string(before.num_temporal_layers) + " temporal layers, ";
 }
 
-// What stays of a GOF or shared rig with vertices.
+// Prints what stays of a GOF or shared rig with vertices.
 void print_cut(const ExtractOptions& o, const std::string& name, const SliceTotals& before,
                const SliceTotals& after) {
   std::printf("  %s: %u of %u trajectories, %u of %u layers, %s%zu of %zu slices, %" PRIu64

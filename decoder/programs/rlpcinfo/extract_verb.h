@@ -8,8 +8,8 @@
 
 namespace rlpc {
 
-// "components=K", "layers=L", "temporal=N", or several of them with commas between them: K is 0
-// or more, L and N are 1 or more.
+// Parses "components=K", "layers=L", "temporal=N", or several of them separated by commas: K is
+// 0 or more, L and N are 1 or more. None if the text is none of these.
 std::optional<SliceCut> parse_slice_cut(const std::string& text);
 
 struct ExtractOptions {

@@ -1,4 +1,4 @@
-// The attributes and the asset of a stream, as rlpcinfo lists them.
+// Attributes and asset of a stream as rlpcinfo lists them.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@ namespace rlpc {
 
 struct ListedAttributes {
   Vector<AttributeSet> sets;
-  std::string problem;            // why they cannot be decoded; empty: they can
-  std::uint64_t asset_bytes = 0;  // 0: there is none
+  std::string problem;            // error that prevents decoding them; empty: none
+  std::uint64_t asset_bytes = 0;  // 0: no asset
 
-  // Decodes them; the stream has been found to conform otherwise.
+  // Decodes the attributes of a stream that otherwise conforms.
   static ListedAttributes of(ByteSource& source, std::uint64_t max_memory_bytes);
 
-  // "uv0: corners, 2 integers of 12 bits, 345 values"
+  // Returns lines such as "uv0: corners, 2 integers of 12 bits, 345 values".
   std::vector<std::string> lines() const;
   void add_to(nlohmann::ordered_json& json) const;
 };

@@ -87,7 +87,7 @@ int complain(const rlpc::OutputError& error) {
   return complain(error.message, rlpc::exit_code(error));
 }
 
-// The outputs besides standard output.
+// Outputs besides standard output.
 struct Outputs {
   std::optional<rlpc::OutputFile> page;
   std::optional<rlpc::PictureFolder> folder;
@@ -119,7 +119,7 @@ std::optional<rlpc::OutputError> write_outputs(Outputs& outputs, const rlpc::Str
   return std::nullopt;
 }
 
-// The frame of the pictures: all vertices in decoded order, in grid units.
+// Decodes the frame of the pictures: all vertices in decoded order, grid units.
 rlpc::Result<std::vector<float>> decoded_frame(const Options& o, rlpc::ByteSource& source,
                                                std::span<const std::uint32_t> vertex_order) {
   rlpc::DecoderOptions options;
@@ -140,7 +140,7 @@ rlpc::Result<std::vector<float>> decoded_frame(const Options& o, rlpc::ByteSourc
   return xyz;
 }
 
-// Sets pictured.groups if there are to be pictures.
+// Summarises the stream, and sets pictured.groups if pictures are requested.
 rlpc::Result<rlpc::StreamSummary> summarise(const Options& o, bool with_pictures,
                                             rlpc::StreamReader& stream,
                                             rlpc::PicturedFrame& pictured) {
@@ -167,7 +167,7 @@ int inform(const Options& o) {
   rlpc::DecoderOptions options;
   options.limits.max_memory_bytes = o.max_memory_bytes;
   options.trace = &counter;
-  // Drops nothing, but counts the memory that coarse meshes take.
+  // Drops nothing, but counts the memory of coarse meshes.
   if (o.coarse || with_pictures) options.coarse_layers = rlpc::kMaxLayers;
   rlpc::StreamReader stream(std::make_unique<rlpc::BorrowedSource>(**source), options);
   if (const auto opened = stream.open(); !opened) return complain(o, opened.error());
@@ -183,7 +183,7 @@ int inform(const Options& o) {
   counter.finish(8 * bytes);
   if (o.trace) return rlpc::kExitDone;
   rlpc::SequenceHeader header = stream.header();
-  header.num_frames = summary->num_frames();  // which an open-ended stream does not announce
+  header.num_frames = summary->num_frames();  // an open-ended stream does not declare it
   rlpc::StreamInfo info{o.input,           header,         counter, bytes, *summary,
                         stream.metadata(), stream.clips(), {}};
   info.max_json_bytes =

@@ -13,10 +13,10 @@ namespace rlpc {
 
 class PictureFolder {
  public:
-  // Creates a temporary folder. input: a stream, which is not to be replaced.
+  // Creates a temporary folder. input: the stream, which must not be replaced.
   static OutputResult<PictureFolder> create(const std::string& path, const std::string& input);
 
-  // Writes NAME.svg for each picture; they appear together, and replace those that are there.
+  // Writes NAME.svg for each picture; they appear together, and replace existing files.
   std::optional<OutputError> write(const std::vector<GofPicture>& pictures);
 
  private:

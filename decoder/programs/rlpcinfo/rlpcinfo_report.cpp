@@ -22,7 +22,7 @@ double bpvf(const StreamInfo& s, double bits) {
   return bits / (static_cast<double>(s.header.num_vertices) * s.header.num_frames);
 }
 
-// The slices of a GOF or shared rig, and its sizes when cut.
+// Adds the slices of a GOF or shared rig, and its sizes when cut.
 template <class Summary>
 void add_slices(const Summary& summary, nlohmann::ordered_json& json) {
   nlohmann::ordered_json slices = nlohmann::ordered_json::array();
@@ -53,7 +53,7 @@ void add_slices(const Summary& summary, nlohmann::ordered_json& json) {
   json["cut_to_layers"] = std::move(layers);
 }
 
-// The sizes of a GOF when cut to fewer temporal layers.
+// Adds the sizes of a GOF when cut to fewer temporal layers.
 void add_temporal_layers(const GofSummary& gof, nlohmann::ordered_json& json) {
   for (std::uint32_t layers = 1; layers <= gof.num_temporal_layers(); ++layers) {
     const SliceTotals cut = gof.totals({SliceCut::kAll, SliceCut::kAll, layers});
@@ -62,7 +62,7 @@ void add_temporal_layers(const GofSummary& gof, nlohmann::ordered_json& json) {
   }
 }
 
-// How many vertices of each frame follow the motion of their patch.
+// Adds the numbers of vertices of each frame that follow the motion of their patch.
 void add_vertex_modes(const GofSummary& gof, nlohmann::ordered_json& json) {
   for (const VertexModes& modes : gof.vertex_modes) {
     json["vertices_of_frame"].push_back(
@@ -105,8 +105,8 @@ nlohmann::ordered_json json_of(const CoarseMeshes& meshes) {
   return json;
 }
 
-// Metadata is not validated: text that is not JSON, is nested too deeply, or needs more memory
-// as a tree, is shown as plain text.
+// Returns metadata as JSON. It is not validated: text that is not JSON, is nested too deeply,
+// or needs more memory as a tree, is shown as plain text.
 nlohmann::ordered_json metadata_json(const std::string& text, std::uint64_t max_bytes) {
   JsonProblem problem;
   auto json = read_json<nlohmann::ordered_json>(text, max_bytes, problem);
@@ -118,14 +118,14 @@ struct Noun {
   const char* many;
 };
 
-// "1 cluster", "12 clusters"
+// Formats "1 cluster", "12 clusters".
 std::string counted(std::uint64_t count, const Noun& noun) {
   return std::to_string(count) + " " + (count == 1 ? noun.one : noun.many);
 }
 
 using Summaries = std::vector<const SlicedSummary*>;
 
-// "12 clusters", or "3 to 12 clusters": a figure over all GOFs, or shared rigs.
+// Formats a figure over all GOFs or shared rigs: "12 clusters", or "3 to 12 clusters".
 std::string range_over(const Summaries& list, std::size_t place) {
   const auto value = [&](const SlicedSummary* summary) {
     return summary->figures[place].value;
@@ -138,7 +138,7 @@ std::string range_over(const Summaries& list, std::size_t place) {
                                        : std::to_string(value(*least)) + " to " + most_counted;
 }
 
-// "a", "a and b", "a, b and c"
+// Formats a list: "a", "a and b", "a, b and c".
 std::string listed(const std::vector<std::string>& parts) {
   std::string text;
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -164,7 +164,7 @@ void print_figures(const std::string& name, const Summaries& list) {
   std::printf("  %s: %zu, with %s each\n", name.c_str(), list.size(), listed(ranges).c_str());
 }
 
-// A line for shared rigs, and one per kind of GOF.
+// Prints a line for shared rigs, and one per kind of GOF.
 void print_kinds(const StreamSummary& stream) {
   Summaries rigs;
   for (const auto& rig : stream.rigs) rigs.push_back(rig.get());
@@ -185,7 +185,7 @@ void print_kinds(const StreamSummary& stream) {
   }
 }
 
-// A row per temporal layer but the first: its slices together.
+// Prints a row per temporal layer except the first, with the totals of its slices.
 void print_temporal_layers(const SlicedSummary& summary) {
   for (std::uint32_t layer = 1; layer < summary.num_temporal_layers(); ++layer) {
     const SliceTotals with = summary.totals({SliceCut::kAll, SliceCut::kAll, layer + 1});
@@ -196,8 +196,8 @@ void print_temporal_layers(const SlicedSummary& summary) {
   }
 }
 
-// A row per component group, a column per layer group, and the size of the GOF or shared rig
-// when cut after each of them; and a row per temporal layer.
+// Prints a row per component group, a column per layer group, and the size of the GOF or shared
+// rig when cut after each of them; and a row per temporal layer.
 template <class Summary>
 void print_slices(const Summary& summary, const char* to_here) {
   std::printf("  %-40s", "layers");
@@ -246,7 +246,7 @@ void print_rig(const RigSummary& rig) {
   print_slices(rig, "rig to here");
 }
 
-// "  49 frames with motions of patches; ..."
+// Prints "  49 frames with motions of patches; ...".
 void print_vertex_modes(const GofSummary& gof) {
   std::uint32_t frames = 0;
   double with = 0;
@@ -280,8 +280,7 @@ void print_gof(const GofSummary& gof) {
   print_vertex_modes(gof);
 }
 
-// Each shared rig is listed before the first GOF that uses it; those that none uses, at the
-// end.
+// Prints each shared rig before the first GOF that uses it, and unused rigs at the end.
 void print_all(const StreamSummary& stream) {
   std::vector<bool> listed(stream.rigs.size(), false);
   for (const GofSummary& gof : stream.gofs) {

@@ -1,4 +1,4 @@
-// What rlpcinfo reports of a stream: as text, as JSON, and as a page.
+// Reports of rlpcinfo on a stream: as text, as JSON, and as a page.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 namespace rlpc {
 
 struct StreamInfo {
-  const std::string& input;  // as given on the command line
+  const std::string& input;  // name on the command line
   const SequenceHeader& header;
   const BitCounter& counter;
   std::uint64_t bytes = 0;
@@ -24,15 +24,15 @@ struct StreamInfo {
   const std::string& metadata;
   const std::vector<Clip>& clips;
   ListedAttributes attributes;
-  const CoarseMeshes* coarse = nullptr;     // to be listed; null: not asked for
-  const PicturedFrame* pictured = nullptr;  // of a page
-  std::uint64_t max_json_bytes = 0;         // of memory for the metadata as JSON
+  const CoarseMeshes* coarse = nullptr;     // coarse meshes to list; null: not requested
+  const PicturedFrame* pictured = nullptr;  // frame to draw on a page
+  std::uint64_t max_json_bytes = 0;         // memory for the metadata as JSON
 };
 
-// Both on standard output.
+// Print to standard output.
 void print_table(const StreamInfo& s, bool with_gofs);
 void print_json(const StreamInfo& s);
-// HTML; `pictured` is set.
+// Returns a page in HTML; `pictured` must be set.
 std::string page_text(const StreamInfo& s);
 
 }  // namespace rlpc

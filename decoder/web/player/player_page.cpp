@@ -18,15 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The placeholder for streams in the player.
+// Placeholder for streams in the player.
 constexpr std::string_view kPlace = "<!-- rlpcdec: streams -->";
-// The maximum size of a player page; larger files are not players.
+// Maximum size of a player page; larger files are not players.
 constexpr std::size_t kMostPlayerBytes = std::size_t{64} << 20;
 // Bytes per element: streams are split, because browsers limit the length of strings. A
 // multiple of 3, so that only the last element has base64 padding.
 constexpr std::size_t kPartBytes = std::size_t{3} << 20;
 
-// Escapes text for a script element, which `</` could end.
+// Returns the description as text for a script element, in which `</` is escaped.
 std::string description(const std::string& name) {
   std::string json = json_text(nlohmann::json{{"name", name}}, -1, true);
   for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) {
@@ -52,7 +52,7 @@ std::optional<OutputError> write_stream(OutputFile& file, ByteSource& source,
 std::vector<fs::path> places_of_player() {
   std::error_code ec;
   const fs::path folder = fs::read_symlink("/proc/self/exe", ec).parent_path();
-  return {folder.parent_path() / "share" / "rlpc" / "player.html",         // bin/ beside share/
+  return {folder.parent_path() / "share" / "rlpc" / "player.html",  // bin/ next to share/
           folder.parent_path().parent_path() / "player" / "player.html"};  // build/release/bin/
 }
 

@@ -12,7 +12,7 @@
 
 namespace rlpc {
 
-// Larger pages are too much for browsers.
+// Maximum size of the streams in a page; browsers fail with larger ones.
 inline constexpr std::uint64_t kMaxPageStreamBytes = std::uint64_t{512} << 20;
 
 // Reads the page of the player from `path` or, if that is empty, from its installed location or
@@ -20,9 +20,9 @@ inline constexpr std::uint64_t kMaxPageStreamBytes = std::uint64_t{512} << 20;
 OutputResult<std::string> read_player(const std::string& path);
 
 struct PageStreams {
-  std::string name;                 // displayed
+  std::string name;                 // name that the page shows
   ByteSource* stream = nullptr;     // not owned
-  ByteSource* reference = nullptr;  // not owned; to show distances from it; null: none
+  ByteSource* reference = nullptr;  // not owned; the page shows distances from it; null: none
 };
 
 // Writes the page; copies the streams in parts.

@@ -1,4 +1,4 @@
-// The functions called from JavaScript (src/wasm_attributes.js) for attributes, drawn vertices
+// C++ functions exported to JavaScript (src/wasm_attributes.js) for attributes, drawn vertices
 // and assets.
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@ RLPC_EXPORT(stream_decode_attributes) bool stream_decode_attributes(Stream* stre
   return stream->decoder.decode_attributes();
 }
 
-// The functions below are to be called after stream_decode_attributes. set: below the number of
+// The functions below must be called after stream_decode_attributes. set: below the number of
 // sets.
 
 RLPC_EXPORT(stream_num_sets) std::uint32_t stream_num_sets(const Stream* stream) {
@@ -42,7 +42,7 @@ std::uint32_t stream_set_num_values(const Stream* stream, std::uint32_t set) {
   return static_cast<std::uint32_t>(stream->decoder.sets()[set].num_values());
 }
 
-// Of a value: as in the stream, and as numbers.
+// Return the number of components of a value, as coded and as numbers.
 RLPC_EXPORT(stream_set_coded_components)
 std::uint32_t stream_set_coded_components(const Stream* stream, std::uint32_t set) {
   return stream->decoder.sets()[set].header.num_components;
@@ -64,7 +64,7 @@ const float* stream_set_numbers(Stream* stream, std::uint32_t set) {
   return stream->numbers.data();
 }
 
-// Of the domain of corners.
+// Returns the index of the value of each corner, in the domain of corners.
 RLPC_EXPORT(stream_set_corners)
 const std::uint32_t* stream_set_corners(const Stream* stream, std::uint32_t set) {
   return stream->decoder.sets()[set].value_of_corner.data();
@@ -85,7 +85,7 @@ const std::uint32_t* stream_drawn_triangles(Stream* stream) {
   return triangles.empty() ? nullptr : triangles.front().data();
 }
 
-// The index of each drawn vertex's value; null: they have none of the set.
+// Returns the index of the value of each drawn vertex; null if they have no values of the set.
 RLPC_EXPORT(stream_drawn_values)
 const std::uint32_t* stream_drawn_values(Stream* stream, std::uint32_t set) {
   const rlpc::DrawnMesh& drawn = stream->decoder.drawn();
@@ -98,25 +98,25 @@ const std::uint32_t* stream_drawn_values(Stream* stream, std::uint32_t set) {
       .data();
 }
 
-// Normals of the set `normal`: 0 if there is none.
+// Returns the number of normals of the set `normal`; 0 if there is none.
 RLPC_EXPORT(stream_num_set_normals) std::uint32_t stream_num_set_normals(Stream* stream) {
   rlpc::DrawnMesh& drawn = stream->decoder.drawn();
   return drawn.has_normals() ? drawn.normals().count() : 0;
 }
 
-// Of the frame that was decoded last.
+// Computes the normals of the frame that was decoded last.
 RLPC_EXPORT(stream_set_normals) const float* stream_set_normals(Stream* stream) {
   const auto positions = stream->decoder.positions();
   rlpc::unit_normals(stream->decoder.drawn().normals().sums(positions), stream->set_normals);
   return stream->set_normals.front().data();
 }
 
-// The index of each drawn vertex's normal.
+// Returns the index of the normal of each drawn vertex.
 RLPC_EXPORT(stream_drawn_normals) const std::uint32_t* stream_drawn_normals(Stream* stream) {
   return stream->decoder.drawn().normal_of_vertex().data();
 }
 
-// Before the functions below.
+// Reads the asset. Must be called before the functions below.
 RLPC_EXPORT(stream_read_asset) bool stream_read_asset(Stream* stream) {
   return stream->decoder.read_asset();
 }

@@ -1,4 +1,4 @@
-// The functions called from JavaScript (src/wasm_decoder.js), but those of attributes.
+// C++ functions exported to JavaScript (src/wasm_decoder.js), except those for attributes.
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -18,7 +18,7 @@ std::string member(const char* name, std::int64_t value) {
   return "\"" + std::string(name) + "\":" + std::to_string(value);
 }
 
-// The header as JSON, with the names of the syntax elements.
+// Returns the header as JSON, with the names of the syntax elements.
 std::string describe(SeekingDecoder& seeking) {
   const Decoder& decoder = seeking.decoder();
   const SequenceHeader& h = decoder.header();
@@ -45,7 +45,7 @@ std::string describe(SeekingDecoder& seeking) {
          std::to_string(origin[1]) + "," + std::to_string(origin[2]) + "]}";
 }
 
-// The whole mesh has no list.
+// Returns null for an empty list, as of the whole mesh.
 const std::uint32_t* address_of(std::span<const std::uint32_t> list) {
   return list.empty() ? nullptr : list.data();
 }
@@ -62,7 +62,7 @@ void compute_coordinates(Stream& stream) {
 
 using rlpc::Stream;
 
-// coarse_layers: 0 for the whole mesh.
+// Makes a stream. coarse_layers: 0 for the whole mesh.
 RLPC_EXPORT(stream_new)
 Stream* stream_new(double num_bytes, double max_memory_bytes, std::uint32_t coarse_layers,
                    bool verify_hashes, bool skip_damaged_units) {
@@ -151,7 +151,7 @@ RLPC_EXPORT(stream_error_bit) double stream_error_bit(const Stream* stream) {
   return static_cast<double>(stream->decoder.error().bit_pos);
 }
 
-// An Errc.
+// Returns an Errc.
 RLPC_EXPORT(stream_error_code) std::uint32_t stream_error_code(const Stream* stream) {
   return static_cast<std::uint32_t>(stream->decoder.error().code);
 }
@@ -161,19 +161,19 @@ RLPC_EXPORT(stream_triangles) const std::uint32_t* stream_triangles(const Stream
   return triangles.empty() ? nullptr : triangles.front().data();
 }
 
-// Null for the whole mesh; otherwise the index of each vertex in it.
+// Returns the index in the whole mesh of each vertex; null for the whole mesh.
 RLPC_EXPORT(stream_coarse_vertices)
 const std::uint32_t* stream_coarse_vertices(const Stream* stream) {
   return rlpc::address_of(stream->decoder.decoder().coarse_vertices());
 }
 
-// The functions below are of the frame that was decoded last.
+// The functions below refer to the frame that was decoded last.
 
 RLPC_EXPORT(stream_positions) const std::int32_t* stream_positions(const Stream* stream) {
   return stream->decoder.positions().data();
 }
 
-// Clause 7.3.
+// Returns coordinates (clause 7.3).
 RLPC_EXPORT(stream_floats) const float* stream_floats(Stream* stream) {
   const auto positions = stream->decoder.positions();
   const rlpc::Grid& grid = stream->decoder.decoder().header().grid;
@@ -191,7 +191,7 @@ RLPC_EXPORT(stream_coordinates) const float* stream_coordinates(Stream* stream) 
   return stream->coordinates.data();
 }
 
-// Of the grid: three least, then three most.
+// Returns the extent in grid units: three minima, then three maxima.
 RLPC_EXPORT(stream_extent) const std::int32_t* stream_extent(Stream* stream) {
   stream->extent = rlpc::extent_of(stream->decoder.positions());
   return stream->extent.least.data();
@@ -204,7 +204,7 @@ RLPC_EXPORT(stream_normals) const float* stream_normals(Stream* stream) {
   return stream->normals.front().data();
 }
 
-// The hash of 9.7.2 of the frame in output order.
+// Returns the hash of 9.7.2 of the frame in output order.
 RLPC_EXPORT(stream_frame_crc) std::uint32_t stream_frame_crc(const Stream* stream) {
   return rlpc::crc32_of_positions(stream->decoder.positions());
 }
@@ -214,7 +214,7 @@ RLPC_EXPORT(stream_num_edges) std::uint32_t stream_num_edges(Stream* stream) {
   return static_cast<std::uint32_t>(stream->edges.size());
 }
 
-// To be called after stream_num_edges.
+// Returns the edges. Must be called after stream_num_edges.
 RLPC_EXPORT(stream_edges) const std::uint32_t* stream_edges(const Stream* stream) {
   return stream->edges.empty() ? nullptr : stream->edges.front().data();
 }

@@ -1,5 +1,5 @@
 // Replaces decoder/codec/gofs/prefetch.cpp and async.cpp: WebAssembly has a single thread here,
-// on which nothing is prefetched.
+// and nothing is prefetched.
 #include "decoder/codec/gofs/prefetch.h"
 
 namespace rlpc {

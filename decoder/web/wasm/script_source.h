@@ -1,5 +1,5 @@
-// A stream whose bytes JavaScript holds, or fetches: read() fails where they are missing, and
-// JavaScript, which knows what was asked for, calls again once it has them.
+// Stream whose bytes JavaScript holds or fetches: read() fails where bytes are missing, and
+// JavaScript, which records the request, calls again once it has them.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 #include "decoder/codec/units/byte_source.h"
 
-// Copies bytes of a stream into memory; false if they are not there. Implemented in
+// Copies bytes of a stream into memory; returns false if they are missing. Implemented in
 // decoder/web/package/src/wasm_decoder.js.
 extern "C" [[clang::import_module("rlpc"), clang::import_name("read_stream")]] bool read_stream(
     double offset, std::uint8_t* out, std::uint32_t num_bytes);

@@ -81,9 +81,9 @@ bool SeekingDecoder::decode(std::uint32_t frame) {
 }
 
 bool SeekingDecoder::finish() {
-  // Bytes were missing in the last call.
+  // Repeats the last call if bytes were missing.
   if (failed_ && !decode_with(decoder_, frame_)) return false;
-  // An open-ended stream may have more frames than its end says.
+  // An open-ended stream may have more frames than its end declares.
   auto more = decoder_->next_frame(positions_);
   while (more && *more) more = decoder_->next_frame(positions_);
   if (!more) error_ = more.error();
@@ -94,7 +94,7 @@ bool SeekingDecoder::finish() {
 bool SeekingDecoder::decode_attributes() {
   if (sets_) return true;
   failed_ = true;  // decode() needs a seek
-  // The place that the decoder returns to: errors of other frames do not count.
+  // Seeks to the place that the decoder returns to; ignores errors of other frames.
   static_cast<void>(decoder_->seek(0));
   auto sets = decoder_->attributes();
   if (!sets) {

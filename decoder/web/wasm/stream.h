@@ -1,6 +1,6 @@
-// What the functions called from JavaScript work on: a SeekingDecoder behind a pointer. There
-// is one for each instance of the module. Memory returned by a function belongs to the decoder
-// and is valid until the next call of that function.
+// Object of the functions that JavaScript calls: a SeekingDecoder behind a pointer, one per
+// instance of the module. Memory that a function returns belongs to the object and is valid
+// until the next call of that function.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace rlpc {
 
-// A decoder, and the last results computed for JavaScript.
+// Decoder, and the last results computed for JavaScript.
 struct Stream {
   explicit Stream(SeekingDecoder seeking) : decoder(std::move(seeking)) {}
 

@@ -10,7 +10,7 @@ constexpr std::size_t kUnfolded = 1;
 constexpr std::size_t kParallelogram = 2;
 constexpr int kUvFractionBits = 4;
 
-// Doubled( a, b, c ): twice the area, positive if the turn is to the left.
+// Doubled( a, b, c ): twice the area, positive for a left turn.
 std::int64_t doubled_area(const AttributeValue& a, const AttributeValue& b,
                           const AttributeValue& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -63,7 +63,7 @@ AttributeValue AttributePredictor::value_of(const AttributeValue& prediction,
   return value;
 }
 
-// CornerAcross( ), whose value is known
+// CornerAcross( ), if its value is known
 std::optional<std::uint32_t> AttributePredictor::corner_across(std::uint32_t e) const {
   const std::uint32_t edge = next_corner(e);
   if (mesh_.edge_mates[edge] == kNoCorner) return std::nullopt;

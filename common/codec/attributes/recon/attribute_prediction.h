@@ -1,4 +1,4 @@
-// Predicts the values of sectors, one after the other (F.7).
+// Predicts the values of sectors in their order (F.7).
 #pragma once
 
 #include <array>
@@ -14,30 +14,30 @@
 
 namespace rlpc {
 
-// What a set is predicted along and from. All must outlive it.
+// Mesh along which a set is predicted. All members must outlive the predictor.
 struct AttributeMesh {
   const AttributeHeader& header;
   std::span<const std::uint32_t> edge_mates;
   const Vector<bool>& seams;  // empty: none
   const Sectors& sectors;
   const SectorOrder& order;
-  const CornerGeometry* geometry = nullptr;  // if header.uses_positions()
-  const FaceView* faces = nullptr;           // if header.has_faces()
+  const CornerGeometry* geometry = nullptr;  // set if header.uses_positions()
+  const FaceView* faces = nullptr;           // set if header.has_faces()
 };
 
-// One value; only the first num_components are used.
+// Value of an attribute; only the first num_components are used.
 using AttributeValue = std::array<std::int64_t, kMaxAttributeComponents>;
 
-// Bits of floats are taken as ordered_bits().
+// Predicts floats as ordered_bits().
 class AttributePredictor {
  public:
   explicit AttributePredictor(const AttributeMesh& mesh);
 
-  // PredictAttribute( ): of sector x, which follows in the order.
+  // PredictAttribute( ) for sector x, the next one in the order.
   AttributeValue predict(std::uint32_t x);
-  // Then its value. From it, further values are predicted, and weights learned.
+  // Takes the value of that sector, from which weights are learned and later values predicted.
   void learn(std::uint32_t x, const AttributeValue& value);
-  // The value of a residual modulo 2^32, as in CodedAttributeSet.
+  // Returns the value of a residual modulo 2^32, as in CodedAttributeSet.
   AttributeValue value_of(const AttributeValue& prediction,
                           std::span<const std::uint32_t> residual) const;
 
@@ -60,7 +60,7 @@ class AttributePredictor {
   AttributeMesh mesh_;
   Vector<AttributeValue> values_;  // [sector]
   Vector<bool> is_known_;
-  Vector<UvPrediction> uv_predictions_;        // of the sector predicted last
+  Vector<UvPrediction> uv_predictions_;        // predictions of the last sector
   std::array<std::int64_t, 3> squared_error_;  // SquaredError
   std::int64_t turn_ = 0;                      // Turn
 };

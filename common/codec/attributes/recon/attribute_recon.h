@@ -1,4 +1,4 @@
-// Attribute sets from seams and residuals (F.7.1).
+// Reconstructs attribute sets from seams and residuals (F.7.1).
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace rlpc {
 
-// DecodeAttributes( ). triangles: in decoded order. first_frame: xyz of each vertex in that
+// DecodeAttributes( ). triangles: in decoded order. first_frame: [num_vertices][3], in decoded
 // order; may be empty if no set uses positions. Vertices of the result are in decoded order.
-// Memory: in proportion to triangles and vertices, one set at a time.
+// Memory: proportional to triangles and vertices, one set at a time.
 Vector<AttributeSet> recon_attributes(const CodedAttributes& coded, std::uint32_t num_vertices,
                                       std::span<const Triangle> triangles,
                                       std::span<const std::int32_t> first_frame);

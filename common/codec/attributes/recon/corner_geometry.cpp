@@ -6,7 +6,7 @@ namespace {
 constexpr std::int64_t kRightAngle = 12868;  // pi / 2
 constexpr int kRatioBits = 15;
 
-// ArcTangent: coefficients of the odd powers of a ratio of at most 1.
+// ArcTangent: coefficients of odd powers of a ratio of at most 1.
 constexpr std::array<std::int64_t, 6> kArcTangent{32767, -10899, 6342, -3815, 1725, -384};
 
 std::int64_t arc_tangent_of(std::int64_t ratio) {
@@ -41,7 +41,7 @@ bool CornerGeometry::is_likely_diagonal(std::uint32_t c, std::uint32_t mate) con
     n[k] = round2(n[k], 16);
     m[k] = round2(m[k], 16);
   }
-  // The cosine exceeds 7/8.
+  // Whether the cosine exceeds 7/8.
   return 8 * dot(n, m) > 7 * (std::int64_t{1} << 28);
 }
 

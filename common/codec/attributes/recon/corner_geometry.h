@@ -11,7 +11,7 @@
 
 namespace rlpc {
 
-inline constexpr int kCornerFractionBits = 12;  // of places along an edge, and ratios
+inline constexpr int kCornerFractionBits = 12;  // places along an edge, and ratios
 
 inline std::int64_t dot(const Vec3l& a, const Vec3l& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -19,12 +19,13 @@ inline std::int64_t dot(const Vec3l& a, const Vec3l& b) {
 
 class CornerGeometry {
  public:
-  // positions: xyz of each vertex, below 2^23 in magnitude. Both must outlive it.
+  // positions: [num_vertices][3], |x| < 2^23. Both spans must outlive it.
   CornerGeometry(std::span<const Triangle> triangles, std::span<const std::int32_t> positions)
       : triangles_(triangles), positions_(positions) {}
 
   std::span<const Triangle> triangles() const { return triangles_; }
-  // CornerDifferences( ): from corner `from` to N others, shifted alike to at most 2^14.
+  // CornerDifferences( ): differences from corner `from` to N others, all shifted by the same
+  // number of bits to at most 2^14.
   template <std::size_t N>
   std::array<Vec3l, N> differences(std::uint32_t from,
                                    const std::array<std::uint32_t, N>& to) const {
@@ -40,7 +41,7 @@ class CornerGeometry {
     }
     return all;
   }
-  // TriangleNormal( t ): its length is twice the area.
+  // TriangleNormal( t ): a vector as long as twice the area.
   Vec3l triangle_normal(std::uint32_t t) const;
   // IsLongestEdge( c )
   bool is_longest_edge(std::uint32_t c) const;

@@ -14,7 +14,7 @@ namespace rlpc {
 
 inline constexpr std::uint32_t kMaxFaceTriangles = 64;
 
-// The face of each triangle, and FaceNormal of each face.
+// Faces of triangles, and FaceNormal of each face.
 struct FaceView {
   std::span<const std::uint32_t> face_of;
   std::span<const Vec3l> normals;
@@ -25,7 +25,7 @@ struct FaceView {
 // F.8.1 Faces
 class Faces {
  public:
-  // seams: empty: none. Without normals, positions are needed only by Diagonals::kLikely.
+  // seams: may be empty. Without normals, only Diagonals::kLikely needs positions.
   Faces(const CornerGeometry& geometry, Diagonals diagonals,
         std::span<const std::uint32_t> edge_mates, const Vector<bool>& seams,
         const Vector<bool>& flags, bool with_normals);
@@ -40,10 +40,10 @@ class Faces {
   }
 
   Vector<std::uint32_t> face_of_;
-  Vector<Vec3l> normals_;  // [triangle]; of a face, at its lowest triangle
+  Vector<Vec3l> normals_;  // [triangle]; the normal of a face is at its lowest triangle
 };
 
-// A point of the unfolded octahedron.
+// Point of the unfolded octahedron.
 using OctahedronPoint = std::array<std::int64_t, 2>;
 
 // F.8.4 OctahedralOf( ); value_bits: 2 to 16.

@@ -1,4 +1,4 @@
-// A cluster GOF (6.5), passed from the parser to reconstruction, and from the analysis to the
+// Cluster GOF (6.5), passed from the parser to reconstruction, and from the analysis to the
 // writer.
 #pragma once
 
@@ -18,8 +18,8 @@ inline constexpr std::uint32_t kMaxSeedStep = 1U << 16;
 enum class SpatialPredictor : std::uint8_t { kNone = 0, kNeighbours = 1, kParallelogram = 2 };
 inline constexpr int kMaxSpatialPredictor = 2;
 
-// One product of a temporal and a spatial factor (clause 8.5): residuals as coded, before
-// prediction is undone.
+// Product of a temporal and a spatial factor (clause 8.5): residuals, before prediction is
+// undone.
 struct Component {
   int scale_idx = 0;
   int spatial_bits = 1;
@@ -34,7 +34,7 @@ struct Component {
 
 struct Cluster {
   bool lcf_flag = false;
-  std::array<std::uint32_t, 3> seed_vertex{};  // only with lcf_flag: three distinct vertices
+  std::array<std::uint32_t, 3> seed_vertex{};  // set with lcf_flag: three distinct vertices
   Vector<Component> components;
 
   bool operator==(const Cluster&) const = default;
@@ -57,7 +57,7 @@ struct ClusterGof : GofHeader {
   bool seed_coupling_flag = false;
   Vector<Cluster> clusters;
   Vector<SeedTrack> seed_tracks;
-  Vector<std::uint16_t> cluster_of_vertex;  // [num_vertices]; of seed vertices: kSeedCluster
+  Vector<std::uint16_t> cluster_of_vertex;  // [num_vertices]; seed vertices: kSeedCluster
 
   bool operator==(const ClusterGof&) const = default;
 };

@@ -1,5 +1,5 @@
-// Models and contexts of a cluster map: of the clusters of a GOF, or of its patches (clause
-// 9.6.2). The parser and the writer drive them in the same way.
+// Models and contexts of the map of clusters or patches of a GOF (clause 9.6.2). The parser and
+// the writer drive them in the same way.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace rlpc {
 
-// In place of the cluster of a seed vertex, which is reconstructed from its track.
+// Cluster index of a seed vertex, which is reconstructed from its track.
 inline constexpr std::uint16_t kSeedCluster = 0xFFFF;
 
 struct ClusterMapModels {
@@ -24,7 +24,8 @@ struct ClusterMapModels {
 // 9.6.2 Predicted cluster, from the neighbours already decoded.
 struct ClusterPrediction {
   std::uint16_t cluster = 0;
-  // Of cluster_predicted_flag; 0: no neighbour, 1: the neighbours agree, 2: they differ.
+  // Context of cluster_predicted_flag; 0: no neighbour, 1: the neighbours agree, 2: they
+  // differ.
   std::size_t context = 0;
 };
 

@@ -25,7 +25,7 @@ struct ClusterModels : ClusterMapModels {
   ResidualModels seed;
   ResidualModels temporal;
   ResidualModels spatial;
-  std::array<std::uint32_t, 4> header_mean{};  // by HeaderField
+  std::array<std::uint32_t, 4> header_mean{};  // [HeaderField]
 };
 
 // 9.6.4 Expected magnitude of a temporal residual.

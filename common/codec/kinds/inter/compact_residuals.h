@@ -1,4 +1,4 @@
-// Residuals of a frame: most are small, and frames are many.
+// Residuals of a frame, stored compactly: most are small, and frames are many.
 #pragma once
 
 #include <algorithm>
@@ -11,14 +11,14 @@
 
 namespace rlpc {
 
-// A list of residuals, one byte each and twelve more for a large one. All are 0 at first.
+// List of residuals, one byte each and twelve more for a large one. All are 0 at first.
 class CompactResiduals {
  public:
   CompactResiduals() = default;
   explicit CompactResiduals(std::size_t size) : small_(size, 0) {}
 
   std::size_t size() const { return small_.size(); }
-  // Each at most once, in any order; sort() has to follow before it is read.
+  // Sets a residual, each at most once and in any order. sort() must follow before reading.
   void set(std::size_t i, std::int32_t value) {
     if (value > kLarge && value <= kMost) {
       small_[i] = static_cast<std::int8_t>(value);
@@ -43,7 +43,7 @@ class CompactResiduals {
   static constexpr std::int8_t kMost = std::numeric_limits<std::int8_t>::max();
 
   Vector<std::int8_t> small_;
-  Vector<std::pair<std::size_t, std::int32_t>> large_;  // by index
+  Vector<std::pair<std::size_t, std::int32_t>> large_;  // index and value, by index
 };
 
 }  // namespace rlpc

@@ -1,5 +1,5 @@
-// 7.14.1 Frame pattern: in which order the frames of an inter GOF are coded, and from which
-// frames each is predicted.
+// 7.14.1 Frame pattern: the coding order of the frames of an inter GOF, and the references of
+// each frame.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@ inline constexpr int kMaxPatternPeriodLog2 = 6;          // R-FRM-05
 inline constexpr std::uint32_t kMaxExplicitPeriod = 32;  // 6.14.1
 inline constexpr std::uint32_t kMaxPatternDepths = 8;    // 6.14.1
 
-// An entry of an explicit pattern. Offsets are frames of a period, from 1; 0: the last frame
+// Entry of an explicit pattern. Offsets are frames of a period, from 1; 0: the last frame
 // before it.
 struct PatternEntry {
   std::uint32_t offset = 1;
-  std::array<std::uint32_t, 2> reference{};  // twice the same: there is one
+  std::array<std::uint32_t, 2> reference{};  // equal: a single reference
   std::uint32_t depth = 0;
 
   bool operator==(const PatternEntry&) const = default;
@@ -36,7 +36,7 @@ struct FramePattern {
 
   std::uint32_t period() const;
   std::uint32_t num_depths() const;
-  // 8.19.1 TemporalLayerOfFrame( f ), of the frames of a depth.
+  // 8.19.1 TemporalLayerOfFrame( f ), for frames of a depth.
   std::uint32_t temporal_layer(std::uint32_t depth) const {
     const std::uint32_t deeper = num_depths() - temporal_layers;
     return depth - std::min(depth, deeper);
@@ -44,21 +44,21 @@ struct FramePattern {
   bool operator==(const FramePattern&) const = default;
 };
 
-// A frame in coding order.
+// Place of a frame in coding order.
 struct FramePlace {
   std::uint32_t frame = 0;
   std::uint32_t first = 0;   // FirstReference
   std::uint32_t second = 0;  // SecondReference
   std::uint32_t depth = 0;
 
-  // With another reference, the only one.
+  // Returns the place with a single, different reference.
   FramePlace from(std::uint32_t reference) const {
     return {frame, reference, reference, depth};
   }
   bool operator==(const FramePlace&) const = default;
 };
 
-// The pattern of a GOF that has this many frames, at least 1.
+// Coding order of a GOF with at least 1 frame.
 class FrameOrder {
  public:
   FrameOrder(const FramePattern& pattern, std::uint32_t num_frames);
@@ -66,9 +66,10 @@ class FrameOrder {
   std::uint32_t num_frames() const { return static_cast<std::uint32_t>(places_.size()); }
   const FramePlace& operator[](std::uint32_t place) const { return places_[place]; }
   std::uint32_t place_of(std::uint32_t frame) const { return place_of_[frame]; }
-  // The last place whose frame is predicted from this one; that of the frame itself if none is.
+  // Returns the last place whose frame is predicted from `frame`, or the place of `frame`
+  // itself.
   std::uint32_t last_use(std::uint32_t frame) const { return last_use_[frame]; }
-  // R-FRM-04: whether both orders have the same first places.
+  // R-FRM-04: returns whether both orders have the same first places.
   bool begins_as(const FrameOrder& other, std::uint32_t num_places) const;
 
  private:

@@ -23,14 +23,14 @@ class InterContexts {
   InterContexts(const OrderedMesh& mesh, std::size_t num_layer_groups,
                 std::uint32_t num_depths);
 
-  // Call at the start of each frame that repeats no other, with its place in coding order and
-  // its depth, and before the vertices of each layer group of it.
+  // Starts a frame that repeats no other, with its place in coding order and its depth, and
+  // each of its layer groups.
   void start_frame(std::uint32_t place, std::uint32_t depth);
   void start_group(std::size_t layer_group) { group_ = layer_group; }
-  // Call before the residuals of a vertex, which follow axis by axis.
+  // Starts a vertex, whose residuals follow axis by axis.
   void start(std::uint32_t v);
 
-  // The expected magnitude of the next residual, with 4 fractional bits, and its models.
+  // Return the expected magnitude of the next residual, with 4 fractional bits, and its models.
   std::uint32_t expected() const {
     const std::uint64_t sum = 64 * std::uint64_t{*layer_mean_} +
                               51 * std::uint64_t{ring_mean_} + 38 * std::uint64_t{outer_mean_};
@@ -42,7 +42,7 @@ class InterContexts {
   ResidualModels& models() { return state_->models[group_][class_]; }
   void update(std::int32_t residual);
 
-  // FrameExpected of the vertex, once it has been started.
+  // Returns FrameExpected of the vertex that has been started.
   std::uint16_t frame_expected() const {
     return static_cast<std::uint16_t>(std::min(expected(), kMaxInterExpected));
   }
@@ -53,21 +53,21 @@ class InterContexts {
   std::uint32_t mean_magnitude(std::span<const std::uint32_t> ring,
                                std::uint32_t otherwise) const;
 
-  // What carries over from frame to frame.
+  // State that frames inherit.
   struct State {
     Vector<std::array<ResidualModels, kFrameClasses>> models;  // [layer group][class]
     Vector<std::uint32_t> mean;                                // FrameLayerMean, [num_layers]
-    Vector<std::uint16_t> magnitude;  // of the last frame, summed over the axes
+    Vector<std::uint16_t> magnitude;  // [num_vertices] last frame, sum of the axes
   };
 
   const OrderedMesh& mesh_;
   std::size_t num_layer_groups_;
-  Vector<State> states_;          // of the first frame, then [num_depths]: of the others
-  State* state_ = nullptr;        // of the frame
+  Vector<State> states_;          // [1 + num_depths]: first frame, then other frames by depth
+  State* state_ = nullptr;        // state of the current frame
   Vector<std::uint16_t> before_;  // FrameMagnitudeBefore
   bool is_first_ = true;
   std::size_t group_ = 0;
-  // State of the current vertex:
+  // State of the current vertex.
   std::uint32_t vertex_ = 0;
   std::size_t class_ = 0;
   std::size_t axis_ = 0;

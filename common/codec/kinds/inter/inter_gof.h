@@ -1,4 +1,4 @@
-// 6.14: an inter GOF, each predicted from decoded ones.
+// 6.14: an inter GOF, whose frames are predicted from decoded frames.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ inline constexpr std::uint32_t kMaxInterStep = 1U << 16;  // 1/16 grid units
 inline constexpr std::uint32_t kExactInterStep = 16;      // one grid unit
 inline constexpr std::uint32_t kMaxInterExpected = 1023;  // 9.8.6, 1/16
 
-// frame_crc, and where it is in the stream.
+// frame_crc, and its place in the stream.
 struct FrameCrc {
   std::uint32_t crc = 0;
   std::uint64_t bit_pos = 0;
@@ -29,16 +29,16 @@ struct FrameCrc {
 
 // 6.14.2 frame_unit( ): the residuals of a frame.
 struct InterFrame {
-  std::uint32_t layer_groups = 0;  // that are in the stream; others are zero
-  // The frame that it is equal to: it then has its layer groups, and nothing of what follows.
+  std::uint32_t layer_groups = 0;  // number in the stream; residuals of others are zero
+  // Frame that this one equals, with the same layer groups; the members below are then empty.
   std::optional<std::uint32_t> repeated;
-  // The frame that it is predicted from, in place of the references of its pattern.
+  // Frame that replaces the references of the pattern.
   std::optional<std::uint32_t> reference;
   std::optional<FrameCrc> frame_crc;
   FramePatches patches;
   CompactResiduals residual;       // [num_vertices][3]; empty: all are zero
   Vector<std::uint16_t> expected;  // [num_vertices]: FrameExpected, 1/16 step
-  // [num_vertices] in a first frame with an order of its own, if there are counterparts.
+  // [num_vertices] in a first frame with its own order and with counterparts; otherwise empty.
   Vector<Counterpart> counterparts;
 
   bool operator==(const InterFrame&) const = default;
@@ -52,17 +52,17 @@ struct InterSettings {
   WeightSettings weights;  // without adaptive factors
   int prime_log2 = 0;
   bool frame_hash_flag = false;
-  std::uint32_t max_earlier_distance = 0;     // in coding order, of repeated and reference
-  Vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups]: layers
+  std::uint32_t max_earlier_distance = 0;     // of repeated and reference, in coding order
+  Vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups] layers
   Vector<std::uint8_t> layer_step;            // [num_layers], 1 to kMaxLayerStep
-  RestSettings rest;                          // of the first frame
+  RestSettings rest;                          // settings of the first frame
   std::uint32_t num_patches = 0;
-  PatchOfVertex patch_of_vertex;  // [num_vertices] if there are patches
+  PatchOfVertex patch_of_vertex;  // [num_vertices]; empty without patches
 
   bool operator==(const InterSettings&) const = default;
 };
 
-// Copies share the frames.
+// Inter GOF. Copies share the frames.
 struct InterGof : GofHeader, InterSettings {
   std::shared_ptr<const Vector<InterFrame>> frames;  // [num_frames]; set once parsed
 

@@ -15,13 +15,13 @@ namespace rlpc {
 
 class PatchContexts {
  public:
-  // num_depths: of the pattern.
+  // num_depths: depths of the pattern.
   PatchContexts(std::size_t num_patches, std::uint32_t num_depths)
       : states_(num_depths, State(num_patches)) {}
 
-  // Call for each frame but the first that repeats no other, with its depth.
+  // Starts a frame that is not the first and repeats no other, with its depth.
   void start_frame(std::uint32_t depth) { depth_ = depth; }
-  // Call for each patch, in order; then its mode follows and, by that, its residuals.
+  // Starts a patch, in order; its mode and the residuals of that mode follow.
   void start(std::size_t patch) { patch_ = patch; }
 
   std::array<BitModel, kPatchModes - 1>& mode_models() {
@@ -29,16 +29,16 @@ class PatchContexts {
   }
   void set_mode(PatchMode mode) { patch().mode = mode; }
 
-  // Of residual i of the motion: the expected magnitude, with 4 fractional bits, and the
+  // Return the expected magnitude of residual i of the motion, with 4 fractional bits, and its
   // models.
   std::uint32_t expected(std::size_t i) const {
     const State& state = states_[depth_];
     return (state.mean[kind(i)] + state.patches[patch_].mean[kind(i)]) >> 5;
   }
   ResidualModels& models(std::size_t i) { return state().residual_models[kind(i)]; }
-  // The rates, 5 and 2, are flat: on cesium-man, dembones and q-trex, neighbouring ones change
-  // bytes by no more than the search for the target error does, 2 %; and so do half and twice
-  // the first mean.
+  // Adapts to a residual. The rates, 5 and 2, matter little: on cesium-man, dembones and
+  // q-trex, neighbouring rates change bytes by no more than the search for the target error, 2
+  // %; so do half and twice the first mean.
   void update(std::size_t i, std::int32_t residual) {
     const std::uint32_t magnitude = magnitude_of(residual);
     std::uint32_t& of_all = state().mean[kind(i)];
@@ -47,7 +47,7 @@ class PatchContexts {
     own = update_mean(own, magnitude, 2);
   }
 
-  // What update() changes, so that an encoder can try a motion.
+  // State that update() changes, for encoders that try a motion.
   struct Means {
     std::array<std::uint32_t, 2> of_all{};
     std::array<std::uint32_t, 2> own{};
@@ -62,8 +62,8 @@ class PatchContexts {
   static constexpr std::uint32_t kFirstMean = 1024;
 
   struct Patch {
-    PatchMode mode = PatchMode::kNeighbours;                    // in the frame before
-    std::array<std::uint32_t, 2> mean{kFirstMean, kFirstMean};  // of offset and matrix
+    PatchMode mode = PatchMode::kNeighbours;                    // mode in the previous frame
+    std::array<std::uint32_t, 2> mean{kFirstMean, kFirstMean};  // means of offset and matrix
   };
   struct State {
     explicit State(std::size_t num_patches) : patches(num_patches) {}

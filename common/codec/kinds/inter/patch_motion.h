@@ -1,4 +1,4 @@
-// 6.14.3: patches, the parts of a mesh that can each move by one affine motion in a frame.
+// 6.14.3: patches, parts of a mesh predicted by one affine motion per frame.
 #pragma once
 
 #include <array>
@@ -9,29 +9,29 @@
 
 namespace rlpc {
 
-inline constexpr std::size_t kOffsetValues = 3;   // patch_residual: of the centre of the patch
-inline constexpr std::size_t kMotionValues = 12;  // and the rows of a matrix
+inline constexpr std::size_t kOffsetValues = 3;   // patch_residual: offset of the centre
+inline constexpr std::size_t kMotionValues = 12;  // patch_residual: offset and rows of a matrix
 
-// patch_mode: how the vertices of a patch are predicted in a frame.
+// patch_mode: prediction of the vertices of a patch in a frame.
 enum class PatchMode : std::uint8_t {
-  kNeighbours,  // vertex type 3 of Ramanathan, Kassim and Tan (2008): from those around
-  kMotion,      // type 2: by the motion of the patch
-  kAlone,       // type 1: likewise, without residuals
+  kNeighbours,  // vertex type 3 of Ramanathan, Kassim and Tan (2008): from neighbours
+  kMotion,      // type 2: by the motion of the patch, with residuals
+  kAlone,       // type 1: by the motion of the patch, without residuals
 };
 inline constexpr int kPatchModes = 3;
 
 struct PatchMotion {
   PatchMode mode = PatchMode::kNeighbours;
-  // In steps: the difference from the last motion of the patch, of frames of the same depth.
+  // Difference from the last motion of the patch in a frame of the same depth, in steps.
   std::array<std::int32_t, kMotionValues> residual{};
 
   bool operator==(const PatchMotion&) const = default;
 };
 
-// The patch of each vertex; empty: there are none.
+// Patch of each vertex; empty: no patches.
 using PatchOfVertex = Vector<std::uint16_t>;
 
-// The patches of a frame; none: all are predicted from neighbours.
+// Patches of a frame; empty: all are predicted from neighbours.
 using FramePatches = Vector<PatchMotion>;
 
 inline PatchMode mode_of(const FramePatches& patches, const PatchOfVertex& patch_of_vertex,

@@ -1,5 +1,5 @@
-// 8.13 Influences of a vertex, predicted from its ring. The parser and the writer drive it in
-// the same way.
+// 8.13 Influences of a vertex: predicts them from its ring. The parser and the writer drive it
+// in the same way.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// The processes from StartInfluences( ) to EndInfluences( ), for one vertex after another.
+// Processes from StartInfluences( ) to EndInfluences( ), for vertex after vertex.
 class InfluencePrediction {
  public:
   // influences [num_vertices]: set for the preceding vertices; must outlive the object.
@@ -20,7 +20,7 @@ class InfluencePrediction {
 
   void start(std::span<const std::uint32_t> ring);  // must stay valid until finish()
 
-  // Extra bones: those that are not candidates.
+  // Extra bones are bones that are not candidates.
   bool can_add_bone() const {
     return num_extra_ < kMaxExtraBones && left_ > 0 &&
            static_cast<std::size_t>(num_extra_) + candidates_.size() < num_bones_;

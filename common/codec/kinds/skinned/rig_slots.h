@@ -1,4 +1,4 @@
-// 8.16.1: Rigs, the shared rigs that are kept while a stream is decoded.
+// 8.16.1: Rigs, the shared rigs that are alive while a stream is decoded.
 #pragma once
 
 #include <array>
@@ -10,11 +10,11 @@
 
 namespace rlpc {
 
-// By rig_idx; null: none. Copies share the rigs.
+// Shared rigs by rig_idx; null: none. Copies share the rigs.
 struct RigSlots {
   std::array<std::shared_ptr<const SharedRig>, kMaxRigs> of_idx;
 
-  // FactorsOfRigs( other ); kMaxRigs: of all.
+  // FactorsOfRigs( other ); other = kMaxRigs: counts all rigs.
   std::uint64_t num_factors(std::size_t other) const {
     std::uint64_t sum = 0;
     for (std::size_t m = 0; m < of_idx.size(); ++m) {

@@ -25,10 +25,10 @@ inline constexpr std::uint32_t kMaxRigs = 8;  // shared rigs at a time
 inline constexpr int kMaxWeightBits = 7;
 inline constexpr std::uint32_t kMaxStepIdx = 239;
 inline constexpr int kMaxInfluences = 8;
-inline constexpr int kMaxExtraBones = 4;  // of a vertex
+inline constexpr int kMaxExtraBones = 4;  // per vertex
 inline constexpr int kMaxTemporalWeights = 3;
 inline constexpr int kTemporalWeightOffset = 256;
-// Values of temporal_predictor: the orders, then 1 to kMaxTemporalWeights weights.
+// Largest value of temporal_predictor: orders, then 1 to kMaxTemporalWeights weights.
 inline constexpr int kMaxTemporalPredictor = 7;
 
 // Residuals of a series of three coordinates, in steps; [num_gof_frames].
@@ -57,7 +57,7 @@ struct Influence {
   bool operator==(const Influence&) const = default;
 };
 
-// At most kMaxInfluences, in the order in which they are coded.
+// Influences of a vertex, at most kMaxInfluences, in coding order.
 struct Influences {
   std::array<Influence, kMaxInfluences> list{};
   std::uint8_t size = 0;
@@ -77,14 +77,14 @@ struct Trajectory {
   int temporal_between = 0;    // 0 to kMaxBetween
   std::array<std::int16_t, kMaxTemporalWeights> temporal_weight{};  // 6 fractional bits
   TrackResiduals residual;
-  bool trajectory_flag = true;  // false: does not occur in the GOF, which has no other element
+  bool trajectory_flag = true;  // false: does not occur in the GOF; no other element is coded
 
   bool operator==(const Trajectory&) const = default;
 };
 
-// 6.13: what has vertices in a skinned GOF. In a shared rig, bones and trajectories are
-// without motion. Values of absent slices are zero; reconstruction then predicts the influences
-// (8.14.1).
+// 6.13: rig of a skinned GOF: all that depends on vertices. In a shared rig, bones and
+// trajectories have no motion. Values of absent slices are zero; reconstruction then predicts
+// the influences (8.14.1).
 struct SharedRig {
   int fraction_bits = 0;
   int weight_bits = 0;
@@ -96,13 +96,13 @@ struct SharedRig {
   Vector<std::uint8_t> layer_step;         // [layer], 1 to kMaxLayerStep
   Vector<Bone> bones;
   std::uint32_t num_component_groups = 0;
-  // [group], the end of each component group among the spatial factors; [0] is kRestFactors.
-  // Groups without any slice are absent.
+  // [group]: end of each component group in the spatial factors; [0] is kRestFactors. Groups
+  // without any slice are absent.
   Vector<std::size_t> group_end{kRestFactors};
-  Vector<std::uint32_t> slice_layers;  // [group], number of layer groups present
+  Vector<std::uint32_t> slice_layers;  // [group]: number of layer groups present
   Vector<Trajectory> trajectories;
   Vector<Influences> influences;  // [num_vertices]
-  // [num_vertices] if there are counterparts, otherwise empty
+  // [num_vertices]; empty without counterparts.
   Vector<Counterpart> counterparts;
   // [group][num_vertices * factors of the group]: residuals, in steps of the layer.
   Vector<Vector<std::int32_t>> vertex_residual;
@@ -114,16 +114,15 @@ struct SharedRig {
 struct SkinnedGof : GofHeader, SharedRig {
   SkinnedGof() { kind = GofKind::kSkinned; }
 
-  int track_levels = 0;         // of hierarchical tracks, besides level 0; 0 to kMaxTrackLevels
+  int track_levels = 0;         // levels of hierarchical tracks above 0; 0 to kMaxTrackLevels
   int num_temporal_layers = 1;  // 1 to track_levels + 1
-  // [group], the temporal layers besides the first of which it has a slice; empty if there are
-  // none in the GOF. Residuals of absent slices are zero.
+  // [group]: number of temporal layers after the first that have a slice; empty if the GOF has
+  // none. Residuals of absent slices are zero.
   Vector<std::uint32_t> temporal_layers;
-  // 6.13.1, of a skinned GOF with a shared rig: the shared rig that it uses; null for other
-  // kinds. What has vertices is then there. The settings, bones and leading trajectories of the
-  // GOF are those of the rig, with their motion; slice_layers counts the component groups of
-  // both; and group_end and vertex_residual are those of the local component groups, with [0]
-  // as the end of the last group of the rig.
+  // 6.13.1: the shared rig in use, which has all that depends on vertices; null for other
+  // kinds. Settings, bones and leading trajectories of the GOF are then those of the rig, with
+  // motion; slice_layers counts the component groups of both; group_end and vertex_residual are
+  // those of the local component groups, with [0] as the end of the last group of the rig.
   std::shared_ptr<const SharedRig> rig;
   std::uint32_t rig_idx = 0;
   std::uint32_t num_local_groups = 0;
@@ -135,7 +134,7 @@ inline TrackFrames track_frames(const SkinnedGof& gof) {
   return {gof.num_frames, gof.track_levels, gof.num_temporal_layers};
 }
 
-// Factors [first, end) of the spatial factors of a GOF or shared rig, as declared.
+// Range [first, end) of the declared spatial factors of a GOF or shared rig.
 struct FactorGroup {
   std::size_t first = 0;
   std::size_t end = kRestFactors;
@@ -145,7 +144,7 @@ inline FactorGroup factor_group(const SharedRig& rig, std::size_t group) {
   return {group == 0 ? 0 : rig.group_end[group - 1], rig.group_end[group]};
 }
 
-// 8.16.1: what FactorsOfRigs( ) counts for a shared rig.
+// 8.16.1: returns the count of a shared rig in FactorsOfRigs( ).
 inline std::uint64_t num_factors(const SharedRig& rig) {
   return (kRestFactors + rig.trajectories.size()) * rig.influences.size();
 }

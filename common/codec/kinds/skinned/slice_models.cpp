@@ -12,7 +12,8 @@ constexpr std::uint64_t reciprocal(std::size_t n) {
   return ((std::uint64_t{1} << 32) - 1) / n + 1;
 }
 
-// This holds for sums of this many 8-bit magnitudes with 8 fractional bits. Rings are smaller.
+// Largest n for which this holds for sums of n 8-bit magnitudes with 8 fractional bits. Rings
+// are smaller.
 constexpr std::size_t kMaxReciprocal = 255;
 static_assert(kMaxReciprocal * (kMaxReciprocal * 255 * 256) < (std::uint64_t{1} << 32));
 

@@ -41,18 +41,18 @@ struct SliceModels {
   ResidualModels header;
   TrackModels trajectory;
   ResidualModels weight;
-  std::array<std::uint32_t, 4> header_mean{};  // by HeaderField
+  std::array<std::uint32_t, 4> header_mean{};  // [HeaderField]
 };
 
-// 9.8.4 Expected magnitude of a spatial residual, for those of one component group. Copies
-// share the magnitudes: on threads of their own, they go on with different vertices of a layer.
+// 9.8.4 Expected magnitude of a spatial residual, for one component group. Copies share the
+// magnitudes, and can process different vertices of a layer on separate threads.
 class VertexContexts {
  public:
   VertexContexts(const OrderedMesh& mesh, std::size_t num_factors);
 
-  // Call before the residuals of a vertex, which follow factor by factor.
+  // Starts a vertex, whose residuals follow factor by factor.
   void start(std::uint32_t v);
-  // The expected magnitude of the next residual.
+  // Returns the expected magnitude of the next residual.
   std::uint32_t expected() const {
     const std::uint64_t sum =
         96 * std::uint64_t{mean_[next_]} + 48 * std::uint64_t{ring_mean_[next_]} +
@@ -75,7 +75,7 @@ class VertexContexts {
         static_cast<std::uint8_t>(std::min<std::uint32_t>(magnitude, 255));
     ++next_;
   }
-  // Adapts the mean of a factor to a residual that a copy has passed.
+  // Adapts the mean of a factor to a residual that a copy has processed.
   void follow(std::size_t factor, std::int32_t residual) {
     mean_[factor] = update_mean(mean_[factor], magnitude_of(residual), 5);
   }
@@ -90,7 +90,7 @@ class VertexContexts {
   // ResidualMagnitude, [num_vertices][num_factors]
   std::shared_ptr<Vector<std::uint8_t>> magnitudes_;
   Vector<std::uint16_t> sums_;  // [num_factors]
-  // State of the current vertex:
+  // State of the current vertex.
   std::uint32_t vertex_ = 0;
   std::size_t next_ = 0;              // next factor
   Vector<std::uint32_t> ring_mean_;   // [num_factors]

@@ -220,11 +220,11 @@ std::uint32_t SetParser::parse_triangle_component(const AttributeHeader& header,
       clip3(0, header.max_value(), std::int64_t{prediction} + residual));
 }
 
-// Of one set, while it is parsed and reconstructed; an upper bound.
+// Returns an upper bound of the memory of one set while it is parsed and reconstructed.
 std::uint64_t memory_of_set(const AttributeHeader& header, std::uint32_t num_vertices,
                             std::uint64_t num_triangles) {
   constexpr std::uint64_t kPerCorner = 40;  // sectors, their order, predictors and rings
-  constexpr std::uint64_t kPerValue = 64;   // of one sector: order, prediction
+  constexpr std::uint64_t kPerValue = 64;   // per sector: order, prediction
   const std::uint64_t corners = 3 * num_triangles;
   const std::uint64_t components = header.num_components;
   switch (header.domain) {

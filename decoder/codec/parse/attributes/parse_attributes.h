@@ -18,8 +18,8 @@ Result<CodedAttributes> parse_attributes(BitReader& r, std::uint32_t num_vertice
                                          std::span<const Triangle> triangles,
                                          const MemoryLimit& memory);
 
-// Whether decoding an attribute unit needs the first frame: reads its headers alone. False if
-// they do not conform.
+// Returns whether decoding an attribute unit needs the first frame. Reads only its headers;
+// false if they do not conform.
 bool attributes_use_positions(BitReader& r);
 
 }  // namespace rlpc

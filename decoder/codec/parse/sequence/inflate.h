@@ -9,8 +9,8 @@
 
 namespace rlpc {
 
-// inflates_to( ): the bytes that exactly one zlib stream inflates to; none unless they are
-// `size`. Allocates size + 1 bytes.
+// inflates_to( ): inflates exactly one zlib stream; none unless it yields `size` bytes.
+// Allocates size + 1 bytes.
 std::optional<String> inflate_exactly(std::span<const std::uint8_t> deflated,
                                       std::uint32_t size);
 

@@ -10,7 +10,7 @@ namespace rlpc {
 // 6.16 asset( )
 Result<String> parse_asset(BitReader& r, const MemoryLimit& memory) {
   constexpr std::uint32_t kGlb = 0;
-  constexpr std::uint64_t kMostInflation = 1032;  // of deflate
+  constexpr std::uint64_t kMostInflation = 1032;  // largest ratio of deflate
   const std::uint32_t format = r.u(8, "asset_format");
   const std::uint64_t at = r.bit_pos();
   const std::uint32_t size = r.u(32, "asset_size");

@@ -8,8 +8,8 @@
 
 namespace rlpc {
 
-// The bytes of an asset of asset_format 0, inflated; empty for other formats. Fails if they
-// need more memory than is allowed.
+// 6.16 asset( ). Inflates an asset of asset_format 0; empty for other formats. Fails if it
+// needs more memory than is allowed.
 Result<String> parse_asset(BitReader& r, const MemoryLimit& memory);
 
 }  // namespace rlpc

@@ -22,7 +22,7 @@ String parse_clip_name(BitReader& r) {
 // 6.15 clip_table( )
 Result<Vector<Clip>> parse_clip_table(BitReader& r, std::uint32_t num_frames,
                                       const MemoryLimit& memory) {
-  constexpr std::uint64_t kBytesOfByte = 60;  // of a clip whose name has one letter
+  constexpr std::uint64_t kBytesOfByte = 60;  // reached by a clip whose name has one letter
   const std::uint64_t needed = memory.bytes_in_use + kBytesOfByte * r.remaining_bytes().size();
   if (needed > memory.max_bytes) {
     r.fail(Errc::kLimitExceeded, "", "num_clips_minus1", r.bit_pos(), needed);

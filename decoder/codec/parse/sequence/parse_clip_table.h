@@ -11,8 +11,8 @@
 
 namespace rlpc {
 
-// num_frames: of the sequence, as far as it is known. Names are not checked (R-CLP-03). Memory
-// is in proportion to the payload.
+// 6.15 clip_table( ). num_frames: frames of the sequence, or kMaxFrames if unknown. Names are
+// not checked (R-CLP-03). Memory is proportional to the payload.
 Result<Vector<Clip>> parse_clip_table(BitReader& r, std::uint32_t num_frames,
                                       const MemoryLimit& memory);
 

@@ -12,8 +12,8 @@
 namespace rlpc {
 namespace {
 
-// The range-coder section of the connectivity unit. Sticky: after the first failure nothing
-// more is decoded.
+// Parses the range-coder section of the connectivity unit. Errors are sticky: nothing is
+// decoded after the first.
 class ConnectivityParser {
  public:
   ConnectivityParser(BitReader& r, std::uint32_t num_vertices, std::uint32_t urgent_degree,

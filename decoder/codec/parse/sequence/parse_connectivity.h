@@ -10,11 +10,12 @@
 
 namespace rlpc {
 
-// 6.4.1 connectivity( ): the triangles in decoding order, every index below num_vertices.
+// 6.4.1 connectivity( ): returns the triangles in decoding order, every index below
+// num_vertices.
 //
-// `r` covers exactly the unit's payload. The caller has checked num_vertices and num_triangles
-// against its limits; memory grows with what is decoded, not with what the header claims, and
-// time is linear in the payload and the decoded triangles.
+// `r` covers exactly the payload of the unit. The caller has checked num_vertices and
+// num_triangles against its limits. Memory grows with the decoded triangles, not with the
+// header; time is linear in the payload and the decoded triangles.
 Result<Vector<Triangle>> parse_connectivity(BitReader& r, std::uint32_t num_vertices,
                                             std::uint32_t num_triangles);
 

@@ -9,8 +9,8 @@
 namespace rlpc {
 
 struct EndOfSequence {
-  std::uint32_t index_distance = 0;  // from the start of the GOF index, bytes; 0: there is none
-  std::uint32_t num_frames = 0;      // of the sequence
+  std::uint32_t index_distance = 0;  // bytes from the start of the GOF index; 0: no index
+  std::uint32_t num_frames = 0;      // frames of the sequence
 };
 
 inline EndOfSequence parse_end_of_sequence(BitReader& r, const SequenceHeader& header) {
@@ -26,7 +26,7 @@ inline EndOfSequence parse_end_of_sequence(BitReader& r, const SequenceHeader& h
   return end;
 }
 
-// Bytes of the payload.
+// Returns the size of the payload in bytes.
 constexpr std::uint32_t end_of_sequence_bytes(const SequenceHeader& header) {
   return header.open_end_flag ? 8 : 4;
 }

@@ -11,11 +11,11 @@
 namespace rlpc {
 
 struct GofLocation {
-  std::uint64_t offset = 0;  // of the GOF unit, bytes from the start of the stream
+  std::uint64_t offset = 0;  // bytes from the start of the stream to the GOF unit
   std::uint32_t first_frame = 0;
 };
 
-// Of a rig unit.
+// Place and index of a rig unit.
 struct RigLocation {
   std::uint64_t offset = 0;
   std::uint32_t rig_idx = 0;
@@ -26,7 +26,7 @@ struct GofIndex {
   Vector<RigLocation> rigs;
 };
 
-// Offsets are not checked against the units here.
+// 6.9 gof_index( ). Offsets are not checked against the units here.
 Result<GofIndex> parse_gof_index(BitReader& r, const SequenceHeader& header);
 
 }  // namespace rlpc

@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-// The JSON text, inflated; at most kMaxMetadataBytes.
+// 6.10 metadata( ). Returns the JSON text, inflated; at most kMaxMetadataBytes.
 Result<String> parse_metadata(BitReader& r, const MemoryLimit& memory);
 
 }  // namespace rlpc

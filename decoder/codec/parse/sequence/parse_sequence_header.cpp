@@ -5,7 +5,7 @@
 namespace rlpc {
 namespace {
 
-// A profile or level that this version does not define is unsupported, not invalid.
+// Fails with kUnsupported, not kInvalid: this version does not define the profile or level.
 void expect_supported(BitReader& r, bool supported, const char* rule, const char* element,
                       std::uint64_t at) {
   if (!r.error() && !supported) r.fail(Errc::kUnsupported, rule, element, at);

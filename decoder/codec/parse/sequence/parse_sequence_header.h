@@ -7,7 +7,7 @@
 
 namespace rlpc {
 
-// Where elements of a sequence header begin, in bits from the start of the stream.
+// Places of elements of a sequence header, in bits from the start of the stream.
 struct SequenceHeaderPlaces {
   std::uint64_t num_vertices_minus1 = 0;
   std::uint64_t num_triangles = 0;
@@ -16,7 +16,7 @@ struct SequenceHeaderPlaces {
   std::uint64_t frame_rate_numerator_minus1 = 0;
 };
 
-// `r` covers exactly the payload of the unit. places: null: not needed.
+// 6.3 sequence_header( ). `r` covers exactly the payload of the unit. places: may be null.
 Result<SequenceHeader> parse_sequence_header(BitReader& r, std::uint32_t version_minor,
                                              SequenceHeaderPlaces* places = nullptr);
 

@@ -9,7 +9,8 @@
 
 namespace rlpc {
 
-// Per decoded vertex, its index in the output: a permutation of 0 .. num_vertices - 1.
+// 6.6 vertex_order( ). Returns the output index of each decoded vertex: a permutation of
+// 0 .. num_vertices - 1.
 Result<Vector<std::uint32_t>> parse_vertex_order(BitReader& r, std::uint32_t num_vertices);
 
 }  // namespace rlpc

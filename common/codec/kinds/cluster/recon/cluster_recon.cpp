@@ -180,8 +180,8 @@ void ClusterRecon::cluster_frame(const ClusterState& cluster, std::uint32_t f,
   }
 }
 
-// Components are not counted: with so many values, the error is that of a step, which it is
-// nearly.
+// Estimate of the coded values per vertex. Components are not counted: with so many values, the
+// error is that of a step, which is nearly true.
 constexpr std::size_t kValuesOfVertex = 12;
 
 Skeleton ClusterRecon::skeleton() const {
@@ -201,7 +201,7 @@ Skeleton ClusterRecon::skeleton() const {
     }
   }
   for (auto& list : skeleton.influences) {
-    if (list.empty()) list = {{0, 1}};  // a seed of no cluster
+    if (list.empty()) list = {{0, 1}};  // seed without a cluster
   }
   return skeleton;
 }

@@ -16,17 +16,17 @@
 
 namespace rlpc {
 
-// 8.3 Spatial prediction process: undoes it in place. `planes` are the x, y and z values [3][n]
-// of the coded vertices of one cluster; on return, values clipped to spatial_bits.
+// 8.3 Spatial prediction process: undoes it in place. planes: x, y and z values [3][n] of the
+// coded vertices of one cluster; on return, values clipped to spatial_bits.
 class SpatialPrediction {
  public:
   // vertices: coded vertices of the cluster, ascending. local_index [num_vertices]: place of a
-  // vertex in its cluster's list.
+  // vertex in the list of its cluster.
   SpatialPrediction(const Topology& topology, std::span<const std::uint32_t> vertices,
                     std::span<const std::uint16_t> cluster_of_vertex,
                     std::span<const std::uint32_t> local_index);
 
-  // 8.3.3 Prediction of a spatial value: the one at index i, from the values before it.
+  // 8.3.3 Prediction of a spatial value: predicts value i from the values before it.
   std::int64_t predict(SpatialPredictor predictor, std::span<const std::int32_t> plane,
                        std::size_t i) const;
 
@@ -62,8 +62,8 @@ class ClusterRecon {
     frames(f, 1, positions);
   }
   std::uint32_t num_frames() const { return num_frames_; }
-  // The clusters as bones, in decoded order, and their local coordinate frames in a frame of
-  // the GOF. In the rest shape, they are where they are in the first frame.
+  // Return the clusters as bones, in decoded order, and their local coordinate frames in a
+  // frame of the GOF. The rest shape has their places in the first frame.
   Skeleton skeleton() const;
   Vector<BonePlace> places(std::uint32_t f) const;
   static constexpr std::size_t values_of_frame() { return 0; }

@@ -14,20 +14,21 @@
 namespace rlpc {
 namespace {
 
-// Vertices of a pass: they take some 20 us, much longer than to share passes out.
+// Vertices of a pass: they take some 20 us, much longer than distributing passes.
 constexpr std::size_t kLearnTogether = 32;
 constexpr std::size_t kTogether = 128;
 
 constexpr std::int32_t kRingWalk = 64;
 constexpr std::int32_t kNearWalk = 16;
 constexpr std::int32_t kErrorWalk = 128;
-// The larger, the faster a filter learns: 19 takes 1 % more bytes where frames are predicted
-// from the one before, 3.5 % with dyadic patterns, up to 7 % with five temporal layers.
+// Shift of the first spread: a filter learns faster with a larger one. 19 takes 1 % more bytes
+// where frames are predicted from the previous one, 3.5 % with dyadic patterns, up to 7 % with
+// five temporal layers.
 constexpr int kFirstSpreadShift = 21;
 constexpr std::int64_t kMostMotion = std::int64_t{1} << 29;
 constexpr std::int64_t kMostOlderError = std::int64_t{1} << 30;
 
-// MotionWalk( v, i ), by the sizes of ring and near vertices.
+// MotionWalk( v, i ) by the sizes of ring and near vertices.
 using Walks =
     std::array<std::array<std::array<std::int32_t, kMaxMotions>, kMaxNear + 1>, kMaxRing + 1>;
 Walks make_walks() {
@@ -41,7 +42,7 @@ Walks make_walks() {
   }
   return walks;
 }
-// Made when they are first needed: as a constant, they are 10 kB of a decoder.
+// Returns the walks, made when they are first needed: a constant takes 10 kB.
 const Walks& all_walks() {
   static const Walks kWalks = make_walks();
   return kWalks;
@@ -454,7 +455,7 @@ void InterRecon::adapt(Learned& learned, std::uint32_t v, const VertexMotion& mo
 
 void InterRecon::end_frame() {
   if (number_ > 0 && settings_.learning_flag) end_errors();
-  // Frames that are no longer needed lend their memory.
+  // Reuses the memory of frames that are no longer needed.
   Vector<std::int32_t> free;
   for (auto it = kept_.begin(); it != kept_.end();) {
     if (it->second.last_use > number_) {
@@ -464,7 +465,7 @@ void InterRecon::end_frame() {
     free = std::move(it->second.values);
     it = kept_.erase(it);
   }
-  // This one stays for one frame in any case: what is left of a period that turns out to be
+  // Keeps this frame for one more in any case: the rest of a period that turns out to be
   // shorter may be predicted from it.
   free = values_;
   const std::uint32_t last_repeat = number_ + std::max(1U, settings_.max_earlier_distance);

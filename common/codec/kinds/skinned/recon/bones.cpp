@@ -12,7 +12,7 @@ namespace {
 constexpr int kScaledBits = 28;  // FloorLog2 of the largest coordinate after scaling
 constexpr int kResidualBits = 31;
 
-// Rotations relative to the parent, [num_frames].
+// Returns the rotations relative to the parent, [num_frames].
 Vector<Quaternion> recon_rotations(const Bone& bone, std::uint32_t num_frames,
                                    int track_levels) {
   Vector<Quaternion> relative(num_frames, kNoRotation);
@@ -26,7 +26,7 @@ Vector<Quaternion> recon_rotations(const Bone& bone, std::uint32_t num_frames,
   return relative;
 }
 
-// Offsets of the origin, [num_frames].
+// Returns the offsets of the origin, [num_frames].
 Vector<Vec3l> recon_offsets(const Bone& bone, std::uint32_t num_frames, int track_levels) {
   Vector<Vec3l> offset(num_frames);
   if (!bone.origin_flag) return offset;

@@ -15,7 +15,7 @@
 
 namespace rlpc {
 
-// Unit quaternion w, x, y, z with 30 fractional bits.
+// Unit quaternion (w, x, y, z) with 30 fractional bits.
 using Quaternion = std::array<std::int64_t, 4>;
 inline constexpr Quaternion kNoRotation{std::int64_t{1} << kQuaternionFractionBits, 0, 0, 0};
 
@@ -29,14 +29,14 @@ std::int64_t step_of(std::uint32_t idx);
 Quaternion normalize_quaternion(Quaternion q);
 // 8.12.4 RotationAfter( p, q ): q followed by p, a unit quaternion; |coordinates of q| <= 2^30.
 Quaternion rotation_after(const Quaternion& p, const Quaternion& q);
-// 8.12.4 TurnedTowards( p, q ): whether that is -q rather than q.
+// 8.12.4 TurnedTowards( p, q ): returns whether it is -q rather than q.
 constexpr bool is_opposite(const Quaternion& p, const Quaternion& q) {
   return p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3] < 0;
 }
 // 8.12.4 AxesOf( q ): the images of the x, y and z axis.
 std::array<Vec3l, 3> axes_of(const Quaternion& q);
 
-// The pose of a bone in one frame.
+// Pose of a bone in one frame.
 struct BonePose {
   Quaternion rotation = kNoRotation;
   std::array<Vec3l, 3> axes{};
@@ -52,9 +52,9 @@ struct BoneMotion {
 // 8.12.3 Moved point; |point| < 2^31.
 Vec3l moved_point(const BonePose& pose, const Vec3l& pivot, const Vec3l& point);
 
-// 8.12.2 Motion of a bone: the rotation relative to the parent, and the offset of the origin,
-// as predicted at a place of a track of which the values at earlier places are known.
-// relative(f) returns a rotation, offset(f) a coordinate.
+// 8.12.2 Motion of a bone: predicts the rotation relative to the parent, and the offset of the
+// origin, at a place of a track from the values at earlier places. relative(f) returns a
+// rotation, offset(f) a coordinate.
 template <class Relative>
 Quaternion predict_rotation(const Relative& relative, const TrackPlace& at, int order) {
   if (at.frame == 0) return kNoRotation;
@@ -86,20 +86,20 @@ std::int64_t predict_offset(const Offset& offset, const TrackPlace& at, int orde
                         at.frame / at.stride, order);
 }
 
-// The rotation and the coordinate of an offset that follow from a residual.
+// Return the rotation, and the coordinate of an offset, for a residual.
 Quaternion rotation_from(const Quaternion& predicted, const Vec3i& residual, std::int64_t step);
 constexpr std::int64_t offset_from(std::int64_t predicted, std::int32_t residual,
                                    std::int64_t step) {
   return clip_signed(kOriginBits, predicted + residual * step);
 }
 
-// The motion of a bone from its rotations relative to the parent and the offsets of its origin,
-// [num_gof_frames]. parent: null for a root.
+// Returns the motion of a bone from its rotations relative to the parent and the offsets of its
+// origin, [num_gof_frames]. parent: null for a root.
 BoneMotion move_bone(const Bone& bone, const BoneMotion* parent,
                      std::span<const Quaternion> relative, std::span<const Vec3l> offset);
 
-// The place in frame f to which the parent moves the pivot of a bone: its origin without an
-// offset.
+// Returns the place in frame f to which the parent moves the pivot of a bone: its origin
+// without an offset.
 Vec3l carried_pivot(const Bone& bone, const BoneMotion* parent, std::uint32_t f);
 
 // Reconstructs all bones of a GOF.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kPadding = 3;  // kernels may read one vector past the end
 
-// The values of the factors of a group.
+// Reconstructs the values of the factors of a group.
 struct ValueRecon {
   const SharedRig& rig;
   std::span<const int> bits;  // [factor]
@@ -26,7 +26,8 @@ struct ValueRecon {
   bool is_rest;
   std::span<std::int32_t> values;  // [num_vertices][factor]
 
-  // Vertices that follow each other in the order or, within a layer above the base, any.
+  // Processes consecutive vertices in the order or, within a layer above the base, any
+  // vertices.
   void vertices(const OrderedMesh& mesh, std::span<const std::uint32_t> list) const {
     Vector<std::int64_t> predicted(bits.size());
     std::optional<VertexAdaptation> adaptation;
@@ -80,7 +81,7 @@ Vector<std::int32_t> recon_values(const OrderedMesh& mesh, const SharedRig& rig,
   Vector<std::int32_t> values(residuals.size());
   if (weights != nullptr) weights->start(factors.first - kRestFactors, bits.size());
   ValueRecon recon{rig, bits, residuals, prediction, weights, group == 0, values};
-  // Vertices of the base, or of a mesh without layers, are predicted from each other.
+  // Vertices of the base, or of a mesh without layers, depend on each other.
   recon.vertices(mesh, mesh.vertices_of_layers(0, 1));
   constexpr std::size_t kTogether = 16;  // vertices of a pass
   for (std::uint32_t layer = 1; layer < mesh.num_layers(); ++layer) {
@@ -143,7 +144,7 @@ Vector<std::int32_t> RigRecon::recon_rest(const SharedRig& rig) const {
 
 void RigRecon::add_influences(const SharedRig& rig, std::span<const std::int32_t> rest) {
   const Vector<Influences> influences = complete_influences(mesh_, rig);
-  // Exact, except for runs, of which there are usually fewer.
+  // Exact, except for runs, which are usually fewer.
   const std::size_t count = std::accumulate(
       influences.begin(), influences.end(), std::size_t{0},
       [](std::size_t sum, const Influences& of_vertex) { return sum + of_vertex.size; });
@@ -195,7 +196,7 @@ void RigRecon::start_weights(const SharedRig& rig, std::span<const std::int32_t>
   }
 }
 
-// Of the component groups from 1 on.
+// Reconstructs the factors of the component groups from 1 on.
 std::shared_ptr<const SpatialFactors> RigRecon::recon_factors(const SharedRig& rig,
                                                               AdaptiveWeights* adaptive) const {
   auto factors = make_shared_owned<SpatialFactors>(num_vertices());
@@ -212,8 +213,7 @@ std::shared_ptr<const SpatialFactors> RigRecon::recon_factors(const SharedRig& r
   return factors;
 }
 
-// 8.16.2 Skinned GOF with a shared rig: the adaptive weights go on from those of the shared
-// rig.
+// 8.16.2 Skinned GOF with a shared rig: adaptive weights continue from those of the shared rig.
 std::shared_ptr<const SpatialFactors> RigRecon::local_factors(const SkinnedGof& gof) const {
   std::optional<AdaptiveWeights> adaptive = adaptive_;
   return recon_factors(gof, adaptive ? &*adaptive : nullptr);

@@ -1,5 +1,5 @@
-// 8.14 and 8.16.1: what has vertices in a skinned GOF or shared rig, reconstructed. It is
-// made once for all GOFs that share a shared rig, and only read after that.
+// 8.14 and 8.16.1: the reconstructed rig of a skinned GOF or shared rig: all that depends on
+// vertices. Made once for all GOFs that use a shared rig, and then read-only.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@
 
 namespace rlpc {
 
-// 8.10.2 Spatial values: the contribution of a residual of rest positions, or of trajectories,
-// at a vertex of a layer.
+// 8.10.2 Spatial values: returns the contribution of a residual of rest positions, or of
+// trajectories, at a vertex of a layer.
 inline std::int64_t rest_difference(const SharedRig& rig, std::int32_t residual,
                                     int layer_step) {
   return round2(std::int64_t{residual} * layer_step * rig.rest_step, 4);
@@ -29,20 +29,20 @@ inline std::int64_t factor_difference(std::int32_t residual, int layer_step) {
   return std::int64_t{residual} * layer_step;
 }
 
-// 8.10.2 Spatial values of the factors of a group, [num_vertices][factors]; without residuals
-// of layers whose slices are absent. weights: null if no factor is adaptive.
+// 8.10.2 Spatial values: returns those of the factors of a group, [num_vertices][factors];
+// absent slices have no residuals. weights: null if no factor is adaptive.
 Vector<std::int32_t> recon_values(const OrderedMesh& mesh, const SharedRig& rig,
                                   std::size_t group, int position_bits,
                                   const ValuePrediction& prediction,
                                   AdaptiveWeights* weights = nullptr);
 
-// 8.14.1 AddAbsentInfluences( ): the influences of all vertices, predicted where the slice is
-// absent; [num_vertices].
+// 8.14.1 AddAbsentInfluences( ): returns the influences of all vertices, [num_vertices],
+// predicted where the slice is absent.
 Vector<Influences> complete_influences(const OrderedMesh& mesh, const SharedRig& rig);
 
 class RigRecon {
  public:
-  // Influences of one bone on vertices of a tile.
+  // Influences of one bone on the vertices of a tile.
   struct Run {
     std::uint32_t bone;
     BoneArms arms;
@@ -50,11 +50,11 @@ class RigRecon {
   };
 
   // The mesh must outlive it; the rig is read only during the call. has_more_groups: whether
-  // local_factors() will be called. Cannot fail.
+  // local_factors() may be called. Cannot fail.
   RigRecon(const OrderedMesh& mesh, const SharedRig& rig, int position_bits,
            bool has_more_groups);
-  // The same where the spatial values of all trajectories are known,
-  // [num_vertices][trajectory].
+  // Takes the spatial values of all trajectories, [num_vertices][trajectory], instead of
+  // reconstructing them.
   RigRecon(const OrderedMesh& mesh, const SharedRig& rig, int position_bits,
            std::span<const std::int32_t> values);
   RigRecon(const RigRecon&) = delete;
@@ -68,11 +68,12 @@ class RigRecon {
     return first_run_[tile + 1] - first_run_[tile];
   }
   Run run(std::size_t tile, std::size_t i) const;
-  // Spatial factors of the trajectories.
+  // Returns the spatial factors of the trajectories.
   const std::shared_ptr<const SpatialFactors>& factors() const { return factors_; }
-  // Those of the local component groups of a skinned GOF with a shared rig.
+  // Returns the spatial factors of the local component groups of a skinned GOF with a shared
+  // rig.
   std::shared_ptr<const SpatialFactors> local_factors(const SkinnedGof& gof) const;
-  // The weights with which local component groups begin; null: they do not adapt.
+  // Returns the weights with which local component groups begin; null: they do not adapt.
   const AdaptiveWeights* adaptive_weights() const { return adaptive_ ? &*adaptive_ : nullptr; }
 
  private:
@@ -92,12 +93,12 @@ class RigRecon {
   int position_bits_;
   Vector<RunRange> runs_;
   Vector<std::size_t> first_run_;  // [tiles + 1]
-  // Influences, by tile, then by bone:
+  // Influences by tile, then by bone.
   std::array<Vector<std::int32_t>, 3> arm_;  // rest position relative to the pivot
   Vector<std::int32_t> weight_;
   Vector<std::uint8_t> place_;
   std::shared_ptr<const SpatialFactors> factors_;
-  // For component groups to come:
+  // Kept for local component groups.
   std::array<Vector<std::int32_t>, 3> rest_;
   std::optional<GeometryWeights> weights_;
   std::optional<AdaptiveWeights> adaptive_;

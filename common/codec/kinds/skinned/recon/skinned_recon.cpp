@@ -117,7 +117,7 @@ Vector<BonePlace> SkinnedRecon::places(std::uint32_t f) const {
 
 // Adds the rest positions of a tile as moved by their bones, times the weights.
 void SkinnedRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const {
-  // All vertices follow a single bone: the run holds their positions.
+  // If all vertices follow a single bone, the run holds their positions.
   const std::size_t num_runs = rig_->num_runs(tile);
   const std::size_t n = std::min(kTileValues, rig_->num_vertices() - tile * kTileValues);
   const bool alone = num_runs == 1 && rig_->run(tile, 0).arms.size == n;

@@ -1,5 +1,5 @@
-// 8.14: reconstructs the integer positions of a skinned GOF from residuals, frame by
-// frame. Used by the decoder, and by the encoder for closed-loop coding.
+// 8.14: reconstructs the integer positions of a skinned GOF from residuals, frame by frame.
+// Used by the decoder, and by the encoder for closed-loop coding.
 #pragma once
 
 #include <array>
@@ -29,11 +29,11 @@ Vec3l skinned_point(const Influences& influences, int weight_bits,
 
 class SkinnedRecon {
  public:
-  // Prepares a GOF with vertices of its own. The mesh must outlive the object; the GOF is read
-  // only during the call. Cannot fail.
+  // Prepares a GOF without a shared rig. The mesh must outlive the object; the GOF is read only
+  // during the call. Cannot fail.
   SkinnedRecon(const OrderedMesh& mesh, const SkinnedGof& gof, int position_bits,
                const Kernels& loops = kernels().back());
-  // Prepares a GOF with the vertices of a shared rig.
+  // Prepares a GOF with a shared rig.
   SkinnedRecon(std::shared_ptr<const RigRecon> rig, const SkinnedGof& gof,
                const Kernels& loops = kernels().back());
 
@@ -45,14 +45,14 @@ class SkinnedRecon {
     frames(f, 1, positions);
   }
   std::uint32_t num_frames() const { return num_frames_; }
-  // Its bones and influences, in decoded order, and the bones in a frame of the GOF.
+  // Return bones and influences, in decoded order, and the places of the bones in a frame.
   Skeleton skeleton() const;
   Vector<BonePlace> places(std::uint32_t f) const;
-  // The number of values that have been coded for each frame.
+  // Returns the number of coded values per frame.
   std::size_t values_of_frame() const { return values_of_frame_; }
 
  private:
-  using Sums = std::array<std::array<std::int64_t, kTileValues>, 3>;  // by coordinate
+  using Sums = std::array<std::array<std::int64_t, kTileValues>, 3>;  // [coordinate][value]
 
   void skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) const;
 
@@ -63,8 +63,8 @@ class SkinnedRecon {
   Kernels loops_;
   std::shared_ptr<const RigRecon> rig_;
   Vector<BoneMotion> bones_;
-  // Displacements; row 3 * f + c: coordinate c of frame f. Of the shared rig, then of local
-  // component groups.
+  // Displacements of the shared rig, then of local component groups. Row 3 * f + c: coordinate
+  // c of frame f.
   Vector<ComponentSum> sums_;
 };
 

@@ -12,8 +12,8 @@ namespace rlpc {
 
 inline constexpr int kTemporalWeightFractionBits = 6;
 
-// 8.14.2 PredictTrajectory( series, place ): a coordinate, from the values at earlier places of
-// the track. series(f) returns one of them.
+// 8.14.2 PredictTrajectory( series, place ): predicts a coordinate from the values series(f) at
+// earlier places of the track.
 template <class Series>
 std::int64_t predict_trajectory(const Trajectory& trajectory, const Series& series,
                                 const TrackPlace& at) {
