@@ -8,7 +8,7 @@
 namespace rlpc {
 namespace {
 
-// What is wrong with the container of a GLB; empty: nothing.
+// Returns what is wrong with the container of a GLB; empty: nothing.
 std::string glb_problem(const std::string& glb) {
   constexpr std::size_t kHeaderBytes = 12;
   constexpr std::size_t kChunkBytes = 8;
@@ -51,7 +51,7 @@ void StreamValidator::asset(const UnitHeader& unit, const Payload& payload) {
     return findings_.unchecked(error.rule, error.element, error.bit_pos,
                                "decoders that leave assets alone do not notice");
   }
-  if (glb->empty()) return;  // of another asset_format
+  if (glb->empty()) return;  // another asset_format
   if (const std::string problem = glb_problem(*glb); !problem.empty()) {
     findings_.unchecked("R-AST-02", "asset_format", unit.payload_offset() * 8, problem);
   }
