@@ -15,8 +15,7 @@ namespace {
 using std::to_string;
 
 constexpr std::uint32_t kUsual = 30;
-constexpr std::uint32_t kLowest =
-    24;  // lowest rate tried; lower ones have multiples from here on
+constexpr std::uint32_t kLowest = 24;        // lowest tried; lower rates have multiples above
 constexpr std::uint32_t kHighest = 60;       // highest that needs no key at every other frame
 constexpr std::uint32_t kDense = 240;        // highest that needs such keys
 constexpr std::uint32_t kMostAdvised = 600;  // the least common multiple of 24, 25 and 60
