@@ -48,13 +48,13 @@ constexpr const char* kDetails = R"(A is the original, B the decoded animation. 
   mesh.obj with --points-a/-b     triangles from the mesh, frames from the point
                                   cache
   clip.pc2, clip.mdd              the same, with the triangles of clip.obj (or
-                                  .ply, .off) beside it
+                                  .ply, .off) next to it
   walk.glb, walk.gltf             a glTF 2.0 scene; for the original, repeat the
                                   --animation, --fps and --no-weld of rlpcenc
   folder/, f_%04d.obj, 'f_*.obj'  one OBJ (PLY, OFF) file per frame, in numeric
                                   order
   mesh.obj                        one frame; if the other side has several and
-                                  mesh.pc2 (.mdd) is beside it, that cache is
+                                  mesh.pc2 (.mdd) is next to it, that cache is
                                   read as well, and the report says so
 
 The vertices of a stream are in the order of the input only if it was encoded

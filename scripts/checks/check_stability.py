@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What is released does not change.
+"""Checks that released parts do not change.
 
 * Every file of streams/vX.Y/SHA256SUMS has the digest that stands there, and spec/versions.md
   calls just those versions and supplements released that have one. SHA256SUMS.sidecars has those of

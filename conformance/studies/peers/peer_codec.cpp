@@ -221,7 +221,7 @@ void add_decode(CLI::App& app, Options& o) {
   app.add_option("--order-map", o.order_map, "Restore the order of the input by this file")
       ->option_text("FILE")
       ->group(kMain);
-  add_output(app, o, "Point cache (.pc2) to write, with an OBJ file beside it");
+  add_output(app, o, "Point cache (.pc2) to write, with an OBJ file next to it");
 }
 
 void add_order(CLI::App& app, Options& o) {
@@ -248,7 +248,7 @@ void add_convert(CLI::App& app, Options& o) {
          "--no-weld", [&o] { o.source.weld = false; },
          "If the input is glTF: keep coincident vertices apart")
       ->group(kMain);
-  add_output(app, o, "Point cache (.pc2) to write, with an OBJ file beside it");
+  add_output(app, o, "Point cache (.pc2) to write, with an OBJ file next to it");
 }
 
 void list(const Options& /*o*/) {

@@ -64,7 +64,7 @@ file, a point cache those of its mesh. Vertices are not split along seams.
 Qualities
   word               KG error   mean normal deviation
   preview            1 %        2 to 9 degrees: dents are visible
-  good (default)     0.1 %      0.2 to 1.3 degrees: hardly visible
+  good (default)     0.1 %      0.2 to 1.3 degrees: barely visible
   fine               0.03 %     below 0.4 degrees
   visually-lossless  0.01 %     below 0.13 degrees: half a step of an 8-bit
                                 display
