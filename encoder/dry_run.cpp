@@ -34,7 +34,7 @@ class StretchSource final : public FrameSource {
                      source.memory_bytes()}),
         source_(source),
         stretch_(stretch) {
-    // Frames have other numbers here.
+    // Frames have other numbers in the sample.
     drop_later_normals();
   }
 
@@ -57,7 +57,7 @@ class StretchSource final : public FrameSource {
   std::uint32_t stretch_;
 };
 
-// Settings for the sample: clips have their names, but not their frames.
+// Returns settings for the sample: clips keep their names, but not their frames.
 EncoderSettings settings_of_sample(EncoderSettings settings, std::uint32_t num_frames) {
   for (std::size_t i = 0; i < settings.clips.size(); ++i) {
     settings.clips[i].first_frame = static_cast<std::uint32_t>(i % num_frames);
@@ -66,7 +66,8 @@ EncoderSettings settings_of_sample(EncoderSettings settings, std::uint32_t num_f
   return settings;
 }
 
-// Frames per stretch: a multiple of the GOF length, so that the sample has GOFs of that length.
+// Returns frames per stretch: a multiple of the GOF length, so that the sample has GOFs of that
+// length.
 std::uint64_t stretch_frames(std::uint64_t gof_frames) {
   if (gof_frames >= kStretchFrames) return gof_frames;
   return kStretchFrames / gof_frames * gof_frames;

@@ -15,8 +15,8 @@ struct Expectation {
   bool exact() const { return frames_encoded == report.header.num_frames; }
 };
 
-// A sequence of at most 1024 frames, or of at most eight GOFs of maximum length if these are
-// longer, is encoded completely, and the report is exact. For a longer sequence, eight evenly
+// Encodes a sequence of at most 1024 frames, or of at most eight GOFs of maximum length if
+// these are longer, completely; the report is then exact. For a longer sequence, eight evenly
 // spaced stretches are encoded as if they were the whole sequence: bits and numbers of GOFs are
 // scaled by the number of frames, errors are those of the stretches. A stretch consists of
 // whole GOFs with about 128 frames in total, or of one GOF if that may be longer.

@@ -1,4 +1,4 @@
-// Implements encode() of encoder/rlpc_encoder.h: the searches whose smallest result is written.
+// Implements encode() of encoder/rlpc_encoder.h: runs searches and writes the smallest result.
 #include "encoder/rlpc_encoder.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct Found {
 // Whether a result is at least as good as another.
 bool is_as_good(const Found& found, const Found& other, Target::Kind kind) {
   if (found.result.met != other.result.met) return found.result.met;
-  // Of rates that are too high, the lowest is the closest.
+  // The lowest of rates that are too high is the closest.
   if (kind != Target::kBpvf || !found.result.met) return found.bytes() <= other.bytes();
   return found.result.trial.metrics.kg_error_percent <=
          other.result.trial.metrics.kg_error_percent;
@@ -53,7 +53,7 @@ InputResult<Found> best_of(FrameSource& source, const EncoderSettings& settings,
         {}};
     auto result = found.encoder->find(rival ? &*rival : nullptr);
     if (!result) {
-      // What a profile contains may fail alone, for example at the limits of a level.
+      // The search of a contained profile may fail alone, for example at the limits of a level.
       if (best && search.may_be_given_up) continue;
       return result.error();
     }

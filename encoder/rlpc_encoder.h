@@ -6,9 +6,9 @@
 //   const auto report = rlpc::encode(source, settings, sink);
 //   if (!report) return complain(report.error().message);
 //
-// encode() decodes the stream that it has made, with the decoder of this project, before any
-// byte of it is passed on. An encoding that cannot be decoded, whose error is not the one
-// reported, or that is not lossless though it should be, is an error: the sink gets nothing.
+// encode() decodes the finished stream with the decoder of this project before it passes on any
+// byte. If the stream cannot be decoded, its error is not the one reported, or it is not
+// lossless though it should be, encode() fails and the sink receives nothing.
 //
 // The same input and settings give the same bytes with every compiler and on every machine. The
 // encoder holds the frames of one GOF at a time, and the analyses of all GOFs if they are small
@@ -23,10 +23,11 @@
 
 namespace rlpc {
 
-// Encodes a whole sequence. Any thread may read from the source, one at a time. Errors: those
-// of the source; an animation that no level allows; contradictory settings, or settings of the
-// other profile; too much memory; numbers that floats do not hold to the largest error of the
-// target; a stream that was not verified; a sink that failed.
+// Encodes a whole sequence and passes the stream to `sink`. Any thread may read from the
+// source, one at a time. Errors: errors of the source; an animation that no level allows;
+// contradictory settings, or settings of another profile; too much memory; input numbers that
+// floats cannot represent within the maximum error of the target; a stream that fails
+// verification; a sink that fails.
 InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& settings,
                                  const ByteSink& sink, const Progress& progress = {});
 

@@ -204,7 +204,7 @@ class Scene:
         return joints
 
     def frame(self, time, animation=0):
-        """Of each primitive, (positions, normals); a normal of length 0: none."""
+        """(positions, normals) of each primitive; a normal of length 0: none."""
         maps, weights = self._pose(time, animation)
         frames = []
         for primitive in self.primitives:

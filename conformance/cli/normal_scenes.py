@@ -157,7 +157,7 @@ def scaled(builder, node, scales, interpolation="LINEAR"):
 
 
 def appears(builder, node, random, part):
-    """From nothing, or nearly nothing, or a flat or a thin thing."""
+    """Grows from nothing, or nearly nothing, or a flat or a thin thing."""
     first = random.choice([[0, 0, 0], [1e-5] * 3, [1e-3] * 3, [1, 0, 1], [0, 1, 0]])
     step = random.randrange(1, 8)
     kind = random.choice(["LINEAR", "STEP"])

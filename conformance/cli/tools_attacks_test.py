@@ -56,7 +56,7 @@ def with_unit(stream, added):
 
 
 def within(seconds):
-    """To be called before a tool starts: it is killed when it has computed for so long."""
+    """Call it before a tool starts: the tool is killed when it has computed for so long."""
     return {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))}
 
 

@@ -18,12 +18,12 @@ from specdec_testing import stream_of, units_of  # noqa: E402
 
 AROUND, ALONG = 16, 9  # a closed tube whose texture has a seam
 ATTRIBUTES, ASSET = 0x88, 0x89  # types of units
-HALF_STEP = 1 / 8192   # of texture coordinates
+HALF_STEP = 1 / 8192   # texture coordinates
 ENCODE = ["--kg", 0.1, "--keep-order", "--quiet"]
 
 
 def angle(k, frame):
-    """Of a vertex; the tube turns by 17 degrees per frame."""
+    """Position of a vertex; the tube turns by 17 degrees per frame."""
     return 2 * math.pi * k / AROUND + 0.3 * frame
 
 

@@ -241,7 +241,7 @@ class Cutting(CutTest):
                                  min(asked[0], sum(gof["layer_group_size"])))
                 sizes = [s["num_trajectories"] for s in gof["slices"]
                          if s["layer_group_idx"] == 0]
-                self.assertEqual(len(sizes) - 1, min(asked[1], sum(sizes)))  # without group 0
+                self.assertEqual(len(sizes) - 1, min(asked[1], sum(sizes)))  # except group 0
             self.ok("rlpcdec", self.path("a.rlpc"), "--verify")
 
     def test_what_is_cut_cannot_be_verified(self):

@@ -13,7 +13,7 @@ from gltf_scene import Scene
 from normal_scenes import Builder, sheet
 from tools_testing import ToolsTest, main
 
-STEP = 1 / 4096  # of decoded texture coordinates, by default
+STEP = 1 / 4096  # decoded texture coordinates, by default
 
 
 def picture():

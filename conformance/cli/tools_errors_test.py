@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How the tools report errors of the input, the output and the stream.
+"""Tests how the tools report errors of the input, the output and the stream.
 
     tools_errors_test.py --bin BUILD/bin [unittest arguments, such as BadInput]
 """
@@ -249,7 +249,7 @@ class BadOutput(ToolsTest):
 
 
 class BadStreams(ToolsTest):
-    """How the tools report damage; conformance/roundtrip/robustness_test.cpp damages every byte."""
+    """Tests reports of damage; conformance/roundtrip/robustness_test.cpp damages every byte."""
 
     def setUp(self):
         super().setUp()

@@ -154,7 +154,7 @@ class SamePlaces(ToolsTest):
             self.fails(64, "choose another name", "rlpccmp", source, source, "--csv", frame)
         self.assertEqual(frame.read_bytes(), last)
         self.assertFalse(out.exists())
-        # The mesh beside the cache, which the command line does not name.
+        # The mesh next to the cache, which the command line does not name.
         self.fails(64, "choose another name", "rlpccmp", self.path("clip.pc2"), self.path("clip.pc2"),
                    "--csv", self.path("clip.obj"))
         buffer = struct.pack("<9f3H", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2)
@@ -217,7 +217,7 @@ class SamePlaces(ToolsTest):
 
 
 class Places(ToolsTest):
-    """Where output files are created, and with which permissions."""
+    """Tests where output files are created, and with which permissions."""
 
     def setUp(self):
         super().setUp()

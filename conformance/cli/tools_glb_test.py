@@ -130,7 +130,7 @@ class SkinReadBack(SkinTest):
 
 
 class SkinChoice(SkinTest):
-    """What --as auto writes, and what --as skin refuses."""
+    """Tests what --as auto writes, and what --as skin refuses."""
 
     def targets(self, stream, *options):
         self.ok("rlpcdec", stream, "-o", self.path("a.glb"), *options)

@@ -81,7 +81,7 @@ class GltfInput(ToolsTest):
         self.path("nameless.gltf").write_text(json.dumps(document))
         sway, visit = (dict(name=name, first_frame=0, num_frames=n, duration=SECONDS[name])
                        for name, n in FRAMES.items())
-        sway24 = {**sway, "num_frames": 49}  # with Visit
+        sway24 = {**sway, "num_frames": 49}  # includes Visit
         cases = [(TULIP, [], [sway]), (TULIP, ["--animation", "Visit"], [visit]),
                  (TULIP, ["--animation", 1], [visit]),
                  (TULIP, ["--animation", "all"], [sway24, {**visit, "first_frame": 49}]),
@@ -222,7 +222,7 @@ class GltfTime(ToolsTest):
     """Clips last as long as in the source, from time 0 to the last pose."""
 
     def through(self, source, *options):
-        """What rlpcenc says; rlpcinfo; the .glb of rlpcdec."""
+        """Returns the messages of rlpcenc, the report of rlpcinfo, and the .glb of rlpcdec."""
         self.path("in.glb").write_bytes(source)
         said = self.ok("rlpcenc", self.path("in.glb"), "--animation", "all", "--preset", "fast",
                        "--max-error", 0.001, "-o", self.path("a.rlpc"), *options).err

@@ -183,7 +183,7 @@ class Expansion(ToolsTest):
         self.fails(3, "--max-output", "rlpcdec", self.stream, "-o", self.path("out.rlpd"),
                    "--max-output", 1200043)
         self.assertEqual(self.path("out.rlpd").stat().st_size, 1200044)
-        self.ok("rlpcdec", self.stream, "-o", self.path("out.pc2"))  # without a limit
+        self.ok("rlpcdec", self.stream, "-o", self.path("out.pc2"))  # no limit
 
 
 class WorstCases(MeasuredTest):

@@ -172,7 +172,7 @@ class Live(ToolsTest):
         return found
 
     def conceal(self, data, options, code=1):
-        """What rlpcdec says, and the frames."""
+        """Returns the messages of rlpcdec, and the frames."""
         stream, out = self.path("d.rlpc"), self.path("d.pc2")
         stream.write_bytes(data)
         done = run("rlpcdec", stream, "-o", out, "--conceal", *options)

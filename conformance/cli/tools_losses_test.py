@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""What streams do not keep of their input is told, in figures that are right; what they keep comes back."""
+"""Tests that notes report the contents of inputs that streams lose, with right figures; the rest
+comes back."""
 
 import math
 import random

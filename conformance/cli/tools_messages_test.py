@@ -125,7 +125,7 @@ class Messages(ToolsTest):
         stream = self.stream()
         self.fails(4, "none.html: cannot read the player", "rlpcdec", stream, "--html",
                    self.path("a.html"), "--player", self.path("none.html"))
-        self.path("bin").mkdir()  # with nothing beside it
+        self.path("bin").mkdir()  # contains nothing else
         shutil.copy(Tools.folder / "rlpcdec", self.path("bin"))
         done = subprocess.run([self.path("bin") / "rlpcdec", stream, "--html", self.path("a.html")],
                               capture_output=True, text=True, check=False)

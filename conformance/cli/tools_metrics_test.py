@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What rlpccmp measures, against the definitions written down a second time, vertex by vertex: STED
+"""Tests rlpccmp against the definitions written down a second time, vertex by vertex: STED
 as its authors' program has it, the edge difference in one ring, both norms of the KG error, and
 both kinds of PSNR."""
 
@@ -10,7 +10,7 @@ import statistics
 
 from tools_testing import ToolsTest, main, read_obj, read_pc2, write_obj, write_pc2
 
-DT, WEIGHT = 0.0003, 9.144e-5  # of STED
+DT, WEIGHT = 0.0003, 9.144e-5  # STED
 BEFORE, AFTER = 5, 4  # steps of its window
 SEEDS = range(1, 41)
 
@@ -20,7 +20,7 @@ def points(frame):
 
 
 def deviation(values):
-    """Of (weight, value)."""
+    """Weighted deviation of (weight, value)."""
     total = math.fsum(w for w, _ in values)
     if total == 0:
         return 0.0
@@ -39,7 +39,7 @@ def diagonal(*frames):
 
 
 def sted_spatial(triangles, a, b):
-    """Of two frames: signed differences, edges of a vertex and of its neighbours."""
+    """Spatial part of two frames: signed differences, edges of a vertex and of its neighbours."""
     edges = edges_of(triangles)
     found = []
     for v in range(len(a)):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Normals of decoded frames beside those of the input, which a reader of .glb files computes that
-shares nothing with encoder and decoder: in scenes whose parts appear, vanish, fold, mirror and
-bend, and in small ones that went wrong.
+"""Compares normals of decoded frames with those of the input, which a reader of .glb files
+computes that shares nothing with encoder and decoder: in scenes whose parts appear, vanish, fold,
+mirror and bend, and in small ones that went wrong.
 
     tools_normals_test.py --bin BUILD/bin [unittest arguments]
 """
@@ -15,7 +15,7 @@ from tools_testing import ToolsTest, main
 
 
 def areas(count, positions, corners):
-    """Of each vertex, the areas of its triangles, twice."""
+    """Twice the area of the triangles of each vertex."""
     of_vertex = [0.0] * count
     for i in range(0, len(corners), 3):
         a, b, c = (positions[v] for v in corners[i:i + 3])
@@ -63,7 +63,7 @@ class Comparison:
             for n, (_, size) in frame.items():
                 largest[n] = max(largest.get(n, 0.0), size)
         self.numbers = [n for n, size in largest.items() if size > 0]
-        for frame in self.frames:  # what can hardly be seen does not count
+        for frame in self.frames:  # barely visible sectors do not count
             for n in self.numbers:
                 normal, size = frame[n]
                 if size < 0.01 * largest[n] or not any(normal):
@@ -88,7 +88,7 @@ class Comparison:
                          for n in self.numbers})
 
     def of_bones(self):
-        """From the normals of the stream."""
+        """Differences from the normals of the stream."""
         return self.rms({n: self.oracle.mean(n, [degrees(bones[n], decoded[n]) for bones, decoded
                                                  in zip(self.by_bones, self.decoded.normals)])
                          for n in self.numbers})

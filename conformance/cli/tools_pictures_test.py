@@ -61,7 +61,7 @@ def projected(points, behind):
 
 class Pictures(CutTest):
     def views(self, path):
-        """Of each view of a file, [(class, points)]."""
+        """[(class, points)] of each view of a file."""
         text = path.read_text()
         views = re.findall(r'<g class="view"[^>]*>\n(.*?)</g>', text, re.DOTALL)
         self.assertEqual(len(views), 2)

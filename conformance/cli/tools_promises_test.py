@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What rlpcenc promises of errors, computed here from the numbers in the input.
+"""Tests the promises of rlpcenc about errors, computed here from the numbers in the input.
 
     tools_promises_test.py --bin BUILD/bin
 """

@@ -108,7 +108,7 @@ class RoundTrip(ToolsTest):
             self.assertLessEqual(distance, report["metrics"]["max_error"] * 1.000001)
 
     def test_frames_by_seeking_are_those_of_the_whole(self):
-        for gof in (3, 7, "all"):  # with an index, without, nothing to seek
+        for gof in (3, 7, "all"):  # an index, no index, nothing to seek
             stream = self.path("a.rlpc")
             self.encode(stream, "--kg", 0.5, "--gof", gof)
             self.ok("rlpcdec", stream, "-o", self.path("all.rlpd"))
@@ -162,7 +162,7 @@ class RoundTrip(ToolsTest):
             text = self.ok("rlpcdec", self.path("a.rlpc"), "--verify", *options).err
             return report["frames_compared"], report["hashes_verified"], text
 
-        expected = {  # of all frames; of frames 5 to 24, which are parts of two GOFs of 20 frames
+        expected = {  # all frames; frames 5 to 24, which are parts of two GOFs of 20 frames
             "none": ((0, False, "no hashes"), (0, False, "not verified")),
             "gof": ((60, True, "hashes agree"), (0, False, "not verified")),
             "frame": ((60, True, "hashes agree"), (20, True, "hashes agree")),

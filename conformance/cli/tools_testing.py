@@ -113,7 +113,7 @@ def read_rlpd(path):
 
 
 def limited(size):
-    """To be called before a tool starts: writing a file beyond `size` bytes fails (EFBIG)."""
+    """Call it before a tool starts: writing a file beyond `size` bytes fails (EFBIG)."""
     return {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
             "restore_signals": False}
 

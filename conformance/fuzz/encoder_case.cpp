@@ -64,7 +64,7 @@ class CaseMaker {
     std::memcpy(&value, &bits, sizeof value);
     return value;
   }
-  // One of `count` legal values, rarely another one.
+  // Returns one of `count` legal values, rarely another one.
   std::uint32_t choice(std::uint32_t count, std::uint32_t first = 0) {
     const std::uint32_t b = byte();
     return b < 250 ? first + b % count : b - 250 + first + count;
@@ -265,7 +265,7 @@ void CaseMaker::read_frames() {
         case 5:
           now[i] += signed_byte() / 256.0;
           break;
-        case 6:  // of any size
+        case 6:  // numbers of any size
           now[i] = shape[i] * std::exp2(20.0 * a);
           break;
         case 7:  // an outlier

@@ -18,14 +18,14 @@ namespace rlpc {
 
 struct EncoderCase {
   std::uint32_t num_vertices = 0;
-  std::vector<std::uint32_t> indices;      // three a triangle
+  std::vector<std::uint32_t> indices;      // three per triangle
   std::vector<std::vector<float>> frames;  // 3 * num_vertices values each
   std::uint32_t num_frames = 0;            // announced; 0: the stream is open-ended
   FrameRate frame_rate;
   std::array<float, 3> box_min{};
   std::array<float, 3> box_max{};
 
-  // For the C interface, which takes frames one by one; `metadata` replaces the pointer.
+  // Options of the C interface, which takes frames one by one; `metadata` replaces the pointer.
   rlpc_encode_options options{};
   std::string metadata;
   bool placed = false;
@@ -34,13 +34,13 @@ struct EncoderCase {
   std::optional<EncoderSettings> settings;
   bool twice = false;  // encode twice and compare the bytes
 
-  // According to the public headers.
+  // Return what the public headers say of the case.
   bool has_legal_target() const;
   std::uint32_t expected_frames() const {
     return num_frames > 0 ? num_frames : static_cast<std::uint32_t>(frames.size());
   }
   bool has_known_options() const;
-  bool is_legal() const;  // apart from the frames
+  bool is_legal() const;  // frames are not considered
   bool is_legal_frame(std::size_t frame) const;
 };
 

@@ -32,7 +32,7 @@ void require_equal(const A& found, const B& wanted, const std::string& of) {
   throw Complaint{of + " is " + std::to_string(found) + ", not " + std::to_string(wanted)};
 }
 
-// Equal up to the order of summation.
+// Whether two sums are equal up to the order of summation.
 bool nearly(double a, double b) {
   return a == b || std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
 }
@@ -228,7 +228,7 @@ class CaseEncoder {
   CaseEncoder& operator=(const CaseEncoder&) = delete;
   ~CaseEncoder() { rlpc_encoder_close(handle_); }
 
-  // The stream; none if an error was expected.
+  // Returns the stream; none if an error was expected.
   std::optional<EncodedCase> run() {
     const rlpc_status created = create();
     require(created == due_of_create(), describe("create", created));

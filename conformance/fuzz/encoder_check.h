@@ -11,17 +11,17 @@
 
 namespace rlpc {
 
-// What an encoder has written and reported.
+// Stream and report of an encoder.
 struct EncodedCase {
   std::vector<std::uint8_t> bytes;
   rlpc_encode_report report{};
   std::vector<std::uint32_t> input_vertex;
 };
 
-// For a legal case: what is wrong with the stream; empty if nothing is.
+// Returns what is wrong with the stream of a legal case; empty if nothing is.
 std::string check_encoded(const EncoderCase& c, const EncodedCase& encoded);
 
-// Encodes and checks; empty if nothing is wrong. result: none if an error was expected.
+// Encodes and checks. Returns what is wrong, or nothing. result: none if an error was expected.
 std::string check_encoder(const EncoderCase& c, std::optional<EncodedCase>* result = nullptr);
 
 }  // namespace rlpc

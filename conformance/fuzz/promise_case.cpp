@@ -68,7 +68,7 @@ class CaseMaker {
   Point axis_{};
   Point velocity_{};
   double spin_ = 0.0;
-  double extent_ = 1.0;  // of the animation, about
+  double extent_ = 1.0;  // approximate size of the animation
   bool on_grid_ = false;
 };
 
@@ -134,7 +134,7 @@ Point CaseMaker::moved(const Point& p, std::uint32_t vertex, double time) const 
   return out;
 }
 
-// All on a grid of few bits, as lossless coding without a number of bits needs it.
+// Moves all frames to a grid of few bits, as lossless coding without a number of bits needs.
 void CaseMaker::place_on_grid() {
   const double step = std::exp2(static_cast<double>(below(12)) - 16.0);
   on_grid_ = true;
@@ -174,7 +174,7 @@ void CaseMaker::make_frames() {
   }
   extent_ = scale;
   if (chance(3)) place_on_grid();
-  if (chance(2) || on_grid_) {  // as floats, in a point cache
+  if (chance(2) || on_grid_) {  // rounded to floats, as in a point cache
     for (auto& frame : case_.frames) {
       for (double& x : frame) x = static_cast<double>(static_cast<float>(x));
     }

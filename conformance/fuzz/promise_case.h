@@ -15,7 +15,7 @@
 
 namespace rlpc {
 
-// Frames as numbers of an input, which floats need not hold.
+// Frames with the numbers of an input, which floats may not represent.
 class ExactFrames final : public FrameSource {
  public:
   ExactFrames(Shape shape, std::vector<std::vector<double>> frames);
@@ -32,16 +32,16 @@ class ExactFrames final : public FrameSource {
 };
 
 struct PromiseCase {
-  // Which function encodes: encode(), or a FrameEncoder that holds spans or has low delay.
+  // Function that encodes: encode(), or a FrameEncoder that holds spans or has low delay.
   enum Way : std::uint8_t { kWhole, kSpans, kLowDelay };
 
   Way way = kWhole;
-  bool open_ended = false;            // of a FrameEncoder
-  std::uint32_t max_held_frames = 0;  // likewise
+  bool open_ended = false;            // for a FrameEncoder
+  std::uint32_t max_held_frames = 0;  // for a FrameEncoder
   EncoderSettings settings;
   FrameSource::Shape shape;
   std::vector<std::vector<double>> frames;  // [frame][3 * num_vertices]
-  std::string kind;                         // of the animation
+  std::string kind;                         // kind of animation
 };
 
 // The same seed makes the same case on every machine.

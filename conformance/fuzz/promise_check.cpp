@@ -77,13 +77,13 @@ InputResult<PromiseStream> encode_case(const PromiseCase& c) {
   return stream;
 }
 
-// What a stream makes of the frames.
+// Differences between the decoded frames and the input.
 struct Measured {
   double largest_error = 0.0;
   long double squared_error = 0.0L;
   long double spread = 0.0L;
-  bool is_exact = true;    // as floats
-  bool is_nearest = true;  // on the grid
+  bool is_exact = true;    // equal as floats
+  bool is_nearest = true;  // nearest on the grid
 
   double kg_error_percent() const {
     if (squared_error == 0.0L) return 0.0;
@@ -143,7 +143,7 @@ std::optional<std::string> find_violation(const PromiseStream& stream) {
   return std::nullopt;
 }
 
-// Near enough that a sum in another order explains the difference.
+// Whether a value exceeds a bound by more than another order of sums explains.
 bool exceeds(double value, double most) { return value > most * (1.0 + 1e-9); }
 
 std::optional<std::string> find_broken_promise(const PromiseCase& c,
@@ -185,8 +185,7 @@ std::optional<std::string> find_broken_promise(const PromiseCase& c,
   return std::nullopt;
 }
 
-// Whether an error tells the truth: that floats do not hold the bound, or that there is no
-// grid.
+// Whether an error is true: floats cannot keep the bound, or there is no grid.
 bool is_explained(const PromiseCase& c, const std::string& message) {
   if (message.find("no common grid of 24 bits") != std::string::npos) {
     return c.settings.target.kind == Target::kLossless && c.settings.target.value == 0.0;

@@ -1,5 +1,5 @@
 // Checks the promises of the encoder from outside: decodes a stream and compares positions with
-// the numbers of the input, believing nothing that the encoder says.
+// the numbers of the input, without trusting anything that the encoder reports.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ enum class Outcome : std::uint8_t {
 
 struct PromiseResult {
   Outcome outcome = Outcome::kWrong;
-  std::string what;  // of kRefused: the error; of kWrong: what is wrong
+  std::string what;  // kRefused: the error; kWrong: what is wrong
 };
 
 struct PromiseStream {

@@ -38,7 +38,7 @@ TEST(Promises, AreKeptByRandomCases) {
   EXPECT_GT(counts[Target::kLossless][static_cast<std::size_t>(Outcome::kKept)], kCases / 4);
 }
 
-// A case, with its stream, that keeps its promise.
+// Returns a case that keeps its promise.
 PromiseCase lossless_case() {
   PromiseCase c = make_promise_case(0);
   c.way = PromiseCase::kWhole;
@@ -63,7 +63,7 @@ PromiseStream encode_for_test(const PromiseCase& c) {
 }
 
 // A few vertices, each frame of them turned about another axis by any angle, or at rest: how
-// many bits they need depends on what is made of them more than on the step.
+// many bits they need depends on the way they are coded more than on the step.
 PromiseCase turned_case(std::uint32_t seed) {
   std::minstd_rand random(seed + 1);
   const auto number = [&] { return static_cast<double>(random() % 2001) / 1000.0 - 1.0; };
@@ -111,7 +111,7 @@ TEST(Promises, OnlyRatesOutOfReachAreMissed) {
   EXPECT_GT(missed, 0);
 }
 
-// The checks themselves: what is planted is found.
+// Tests the checks themselves: they find planted faults.
 TEST(Promises, AreSeenToBeBroken) {
   const PromiseCase right = lossless_case();
   const PromiseStream stream = encode_for_test(right);

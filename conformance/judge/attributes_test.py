@@ -24,7 +24,7 @@ def fake(fault):
 
 
 class Attributes(JudgeTest):
-    """Of each fault: the outcome of each stream, and the grades."""
+    """Outcome of each stream, and grades, for each fault."""
 
     def setUp(self):
         super().setUp()

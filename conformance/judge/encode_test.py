@@ -103,7 +103,7 @@ class Encoders(JudgeTest):
             code, text, errors = self.command("encode", "--encoder", self.folder / "myenc",
                                               "--only", "curtain-still", "--reference",
                                               Tools.folder / "rlpcdec")
-            self.assertIn("no rlpcval beside" if name == "myenc" else "validator: exit code 9",
+            self.assertIn("no rlpcval next to" if name == "myenc" else "validator: exit code 9",
                           text + errors)
             self.assertEqual(code, 64 if name == "myenc" else 1)
 

@@ -188,7 +188,7 @@ class Grader:
 
 
 def _attributes_complaint(stream, run):
-    """What is wrong with a decoding to OUT.rlpa, or None."""
+    """Returns what is wrong with a decoding to OUT.rlpa, or None."""
     due = stream.attributes
     done, exists = run.finished, run.output.is_file() and run.output.stat().st_size > 0
     if due.startswith("R-"):

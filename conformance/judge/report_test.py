@@ -227,7 +227,7 @@ def checksum(path):
 
 
 def load_plugin(path):
-    """What the file registers as a decoder."""
+    """Returns what the file registers as a decoder."""
     registered = []
     modules = {"fluster": types.ModuleType("fluster")}
     for name, content in (("codec", {"Codec": types.SimpleNamespace(NONE="None"),

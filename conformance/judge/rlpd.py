@@ -11,7 +11,7 @@ FIELDS = ("magic", "version", "num_vertices", "num_triangles", "num_frames",
           "grid_origin[1]", "grid_origin[2]")
 _HEADER = struct.Struct("<4s6I4i")
 _BLOCK = 1 << 20
-_LARGEST_FRAME = 12 << 23  # of the highest level
+_LARGEST_FRAME = 12 << 23  # bytes, in the highest level
 
 
 class RlpdError(Exception):

@@ -28,7 +28,7 @@ class CommandError(Exception):
 
 @dataclasses.dataclass
 class Finished:
-    """How a command ended. code is negative for a signal, and None after a timeout."""
+    """The end of a command. code is negative for a signal, and None after a timeout."""
 
     code: int
     seconds: float
@@ -36,7 +36,7 @@ class Finished:
     stderr: str  # the end of it
 
     def ending(self):
-        """As text, such as "exit code 1" or "killed by SIGSEGV"."""
+        """The end as text, such as "exit code 1" or "killed by SIGSEGV"."""
         if self.code is None:
             return f"still running after {self.seconds:.0f} s"
         if self.code < 0:

@@ -151,7 +151,7 @@ class Suites(JudgeTest):
 
 
 class Expectations(JudgeTest):
-    """What is written into sidecars."""
+    """Tests the contents of sidecars."""
 
     def test_expectations_are_those_of_rlpcdec(self):
         for path in sorted(self.suite.glob("*/*/*.rlpc")):

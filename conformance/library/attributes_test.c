@@ -1,6 +1,6 @@
-// Attributes and drawn vertices, as the library in C gives them. C99.
+// Tests attributes and drawn vertices of the library in C. C99.
 //
-//   attributes_test STREAM...   with attributes; the first is ATT-0001a
+//   attributes_test STREAM...   streams with attributes; the first is ATT-0001a
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,15 +31,15 @@ static rlpc_decoder* opened(void) {
   return decoder;
 }
 
-// What is drawn at each corner of the triangles of a stream.
+// Vertices drawn at each corner of the triangles of a stream.
 typedef struct drawing {
   rlpc_stream_info info;
   size_t num_corners;
   uint32_t num_sets;
   uint32_t num_drawn;
   uint32_t* triangles;
-  uint32_t* drawn;   // of each corner
-  uint32_t* vertex;  // of each drawn vertex
+  uint32_t* drawn;   // [corner]
+  uint32_t* vertex;  // [drawn vertex]
 } drawing;
 
 static drawing draw(rlpc_decoder* decoder) {
@@ -191,7 +191,7 @@ static void check_sets(void) {
   rlpc_decoder_close(decoder);
 }
 
-// What a caller can get wrong.
+// Tests mistakes of a caller.
 static void check_arguments(void) {
   rlpc_decoder* decoder = opened();
   rlpc_attribute set;
@@ -227,7 +227,7 @@ static void check_arguments(void) {
   CHECK(rlpc_decoder_attributes(NULL, &number) == RLPC_BAD_ARGUMENT);
 }
 
-// A stream of which a byte of the attribute unit was changed.
+// A stream with a changed byte in its attribute unit.
 static void check_damage(void) {
   static unsigned char bytes[1 << 14];
   FILE* const file = fopen(path, "rb");
@@ -235,7 +235,7 @@ static void check_damage(void) {
   if (file == NULL) return;
   const size_t size = fread(bytes, 1, sizeof bytes, file);
   fclose(file);
-  size_t at = 0;  // of the attribute unit: ancillary_flag and unit_type, then 32 bits of size
+  size_t at = 0;  // place of the attribute unit: ancillary_flag, unit_type, 32 bits of size
   while (at + 4 < size && !(bytes[at] == 0x88 && bytes[at + 1] == 0 && bytes[at + 2] == 0))
     ++at;
   CHECK(at + 12 < size);

@@ -1,5 +1,5 @@
-// What the library in C gives between two frames: positions, normals and bounds, computed here
-// from the frames alone. C99.
+// Tests positions, normals and bounds between two frames in the library in C against values
+// computed from the frames. C99.
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@
 #define TRIANGLES (2 * (SIDE - 1) * (SIDE - 1))
 #define FRAMES 24
 
-static size_t reads;  // of the stream, by the decoder
+static size_t reads;  // reads of the stream by the decoder
 
 // A sheet that waves.
 static void make_frame(int frame, float* xyz) {
@@ -158,7 +158,7 @@ static void test_exact_at_frames(void) {
     CHECK(blend_of(decoder, f, f, 0.3, &output) == RLPC_OK);
     CHECK(memcmp(mixed, positions[f], sizeof mixed) == 0);
   }
-  // Frames as such are what they were.
+  // Frames by themselves have not changed.
   CHECK(rlpc_decoder_frame(decoder, 7, &output) == RLPC_OK);
   CHECK(memcmp(mixed, positions[7], sizeof mixed) == 0);
   rlpc_decoder_close(decoder);

@@ -1,4 +1,4 @@
-// The library as programs in C use it: every function, and what each refuses. C99.
+// Tests the library as programs in C use it: every function, and its errors. C99.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@
 typedef struct buffer {
   unsigned char bytes[1 << 16];
   size_t size;
-  size_t allowed;  // writes; 0: all
+  size_t allowed;  // number of writes; 0: all
   size_t writes;
 } buffer;
 
@@ -136,7 +136,7 @@ static void test_clip_times(rlpc_decoder* decoder) {
   CHECK(fabs(seconds - (FRAMES - 1) / 30.0) < 1e-12);
   CHECK(rlpc_decoder_duration(decoder, &rest, &seconds) == RLPC_OK);
   CHECK(fabs(seconds - (FRAMES - 5) / 30.0) < 1e-12);
-  const rlpc_clip beyond = {"", FRAMES - 2, 100};  // as a stream of unknown length may claim
+  const rlpc_clip beyond = {"", FRAMES - 2, 100};  // a stream of unknown length may claim this
   CHECK(rlpc_decoder_duration(decoder, &beyond, &seconds) == RLPC_OK);
   CHECK(fabs(seconds - 1 / 30.0) < 1e-12);
   const rlpc_clip wrong[2] = {{"", FRAMES, 1}, {"", 0, 0}};
@@ -329,7 +329,7 @@ static void test_options(const buffer* stream) {
   CHECK_TEXT(rlpc_decoder_error_text(decoder), "R-STR-01");
   rlpc_decoder_close(decoder);
 
-  // Into the caller's buffer, if it is large enough.
+  // The handle is in the caller's buffer, if that is large enough.
   void* place = malloc(rlpc_decoder_bytes());
   options.place = place;
   options.place_bytes = rlpc_decoder_bytes() - 1;
@@ -343,7 +343,7 @@ static void test_options(const buffer* stream) {
   rlpc_decoder_close(decoder);
   free(place);
 
-  // Not initialised; of a newer version, with its new members unset and set.
+  // Options that are not initialised, or of a newer version with its new members unset and set.
   struct {
     rlpc_decode_options options;
     uint64_t future;

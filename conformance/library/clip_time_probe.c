@@ -1,4 +1,4 @@
-// Writes what the library in C shows at times of clips, for tests that compare it with
+// Prints the frames that the library in C shows at times of clips, to compare them with
 // JavaScript. C99.
 //
 //   clip_time_probe STREAM < times

@@ -63,7 +63,7 @@ class FailedAllocation : public testing::TestWithParam<Case> {
     return status;
   }
 
-  // All frames, and the first once more.
+  // Decodes all frames, and the first once more.
   rlpc_status decode(const rlpc_decode_options& options, std::vector<std::int32_t>& positions) {
     rlpc_decoder* decoder = nullptr;
     rlpc_status status =

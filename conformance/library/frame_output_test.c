@@ -1,4 +1,4 @@
-// Frames in every form that the library in C gives them. C99.
+// Tests all output formats of frames of the library in C. C99.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -61,7 +61,7 @@ static double half(uint16_t bits) {
   return bits >> 15 ? -size : size;
 }
 
-// Value c of vertex v in the buffer, of a format.
+// Returns value c of vertex v in the buffer, in a format.
 static double value(uint32_t format, size_t stride, int v, int c) {
   const size_t bytes = format == RLPC_INT8                           ? 1
                        : format == RLPC_INT16 || format == RLPC_HALF ? 2
@@ -111,10 +111,10 @@ static void test_positions(void) {
         CHECK(fabs(x - expected[v][c]) <= most);
       }
     }
-    // What is between vertices is left alone.
+    // Bytes between vertices are not changed.
     if (stride != 0) CHECK(buffer[12] == 0xAB && buffer[STRIDE - 1] == 0xAB);
   }
-  // Scales of the caller's; beyond them, the outermost values.
+  // Scales given by the caller; values beyond them are clamped.
   rlpc_frame_output_init(&output, sizeof output);
   int16_t small[3 * VERTICES];
   output.positions.data = small;

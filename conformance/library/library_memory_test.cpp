@@ -32,7 +32,7 @@ std::vector<std::uint8_t> encoded_strip() {
   return stream;
 }
 
-// Apart from a temporary buffer for the sums of bones of a few frames.
+// Frames only use a temporary buffer for the sums of bones of a few frames.
 TEST(Library, FramesWithinAGofKeepNoMemory) {
   const std::vector<std::uint8_t> stream = encoded_strip();
   rlpc_decoder* decoder = nullptr;

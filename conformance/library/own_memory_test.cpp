@@ -19,7 +19,7 @@
 
 namespace {
 
-// Whether a decoder with one thread is at work.
+// Whether a decoder with one thread is running.
 bool is_decoding = false;
 std::size_t num_news = 0;  // calls of operator new in that time
 
@@ -60,7 +60,7 @@ class Heap {
   std::size_t wrong = 0;
 
  private:
-  // Its own bookkeeping is not the decoder's.
+  // Excludes the bookkeeping of the heap from the decoder's memory.
   class Apart {
    public:
     Apart() : before_(std::exchange(is_decoding, false)) {}
@@ -111,7 +111,7 @@ Bytes read(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Those of all versions and kinds of GOF that are not large.
+// Returns small streams of all versions and kinds of GOF.
 std::vector<fs::path> streams() {
   constexpr std::uintmax_t kMostBytes = 20000;
   std::vector<fs::path> found;
@@ -126,7 +126,7 @@ std::vector<fs::path> streams() {
   return found;
 }
 
-// All frames forward, then some backward with normals.
+// Decodes all frames forward, then some backward with normals.
 rlpc_status decode(const Bytes& stream, Heap* heap, std::uint32_t threads) {
   rlpc_decode_options options;
   rlpc_decode_options_init(&options, sizeof options);

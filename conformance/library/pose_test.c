@@ -1,5 +1,5 @@
-// Bones of frames in C: with them, their weights and the rest shape, a program gets the frames
-// that the decoder gives. C99.
+// Tests bones of frames in C: with them, their weights and the rest shape, a program can
+// compute the frames of the decoder. C99.
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -70,7 +70,7 @@ static void decode(uint32_t frame) {
   CHECK(rlpc_decoder_frame(decoder, frame, &output) == RLPC_OK);
 }
 
-// What a graphics card does: how far from the frame it ends, at most and on average.
+// Skins as a graphics card does. Returns the largest distance from the frame; mean: average.
 static double skin_error(uint32_t slots, double* mean) {
   double most = 0, sum = 0;
   for (size_t v = 0; v < VERTICES; ++v) {
@@ -123,7 +123,7 @@ static void check_bones(const rlpc_pose* pose) {
   }
 }
 
-// Bones of a whole GOF, with the rest shape of its first frame.
+// Tests the bones of a whole GOF with the rest shape of its first frame.
 static void test_skinning(uint32_t first, uint32_t count) {
   decode(first);
   rlpc_pose pose;
@@ -144,7 +144,7 @@ static void test_skinning(uint32_t first, uint32_t count) {
     CHECK(rlpc_decoder_bone_matrices(decoder, matrices, 16 * now.num_bones) == RLPC_OK);
     double mean;
     const double most = skin_error(slots, &mean);
-    if (f == first) CHECK(most < 1e-4);  // exact, but for rounding
+    if (f == first) CHECK(most < 1e-4);  // exact except for rounding
     CHECK(most < 1e-3 && mean < 1e-4);   // the tube is 4 long, and bones leave nothing
   }
 }

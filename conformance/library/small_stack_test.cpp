@@ -1,4 +1,4 @@
-// The stack that the libraries use: how much their headers say a thread must have.
+// Tests that the libraries need no more stack than their headers say.
 #include <gtest/gtest.h>
 #include <pthread.h>
 
@@ -63,7 +63,7 @@ void expect_within(std::size_t used, std::size_t most, const std::string& what) 
 #endif
 }
 
-// All that the decoder gives of a stream.
+// Decodes all data of a stream.
 void decode(const std::string& path, std::uint32_t threads) {
   rlpc_decode_options options;
   rlpc_decode_options_init(&options, sizeof options);

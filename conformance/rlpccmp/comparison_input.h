@@ -18,11 +18,11 @@ struct ComparisonInput {
 };
 
 // An .rlpc file is decoded to float32, with its hashes checked; x.pc2 and x.mdd take their
-// triangles from x.obj (or .ply, .off) beside it; everything else is as for the encoder.
+// triangles from x.obj (or .ply, .off) next to it; everything else is as for the encoder.
 InputResult<ComparisonInput> open_comparison_input(const InputOptions& given);
 
-// Both sides, with as many vertices and frames. x.obj alone is one frame; if the other side has
-// several and x.pc2 is beside it, the cache is read as well (and the name says so).
+// Both sides, with equal numbers of vertices and frames. x.obj alone is one frame; if the other
+// side has several and x.pc2 is next to it, the cache is read too, and the name says so.
 struct ComparisonPair {
   ComparisonInput a;
   ComparisonInput b;

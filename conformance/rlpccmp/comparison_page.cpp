@@ -82,7 +82,7 @@ struct Parsed {
   StreamRates rates;
 };
 
-// All of the stream, for its bits.
+// Reads all of the stream, for its bits.
 std::optional<InputError> parse(const std::string& path, Parsed& parsed) {
   const auto complain = [&](const Error& error) {
     return InputError{path + ": " + describe_error(error)};

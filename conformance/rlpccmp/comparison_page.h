@@ -1,4 +1,4 @@
-// What rlpccmp found, as one page for a browser.
+// Findings of rlpccmp as one page for a browser.
 #pragma once
 
 #include <optional>
@@ -14,20 +14,20 @@ namespace rlpc {
 struct Distortion {
   Metrics metrics;
   SurfaceMetrics surface;
-  // Whether every decoded number is the float nearest to that of A: what is left is rounding.
+  // Whether every decoded number is the float nearest to A's: the only error is rounding.
   bool is_rounding = false;
 };
 
 struct ComparisonPage {
   const ComparisonPair& pair;
   const Distortion& distortion;
-  const MeshView& view;  // with its frames
+  const MeshView& view;  // includes the frames
   std::string stream;    // the file that B was decoded from; empty: unknown
 };
 
 InputResult<std::string> comparison_page_text(const ComparisonPage& comparison);
 
-// The KG error of one frame, as Metrics::kg_error_percent is that of all.
+// Returns the KG error of one frame; Metrics::kg_error_percent is that of all frames.
 double kg_error_percent(const FrameMetrics& frame);
 
 }  // namespace rlpc

@@ -107,7 +107,7 @@ struct Options {
   bool quiet = false;
 };
 
-// CLI11's own check accepts NaN, which nothing exceeds.
+// CLI11's check accepts NaN, which nothing exceeds.
 const CLI::Validator kBound(
     [](const std::string& word) {
       double value = 0.0;
@@ -225,7 +225,7 @@ rlpc::InputResult<rlpc::Distortion> compare(const rlpc::ComparisonPair& pair,
         const std::size_t at = 3 * std::size_t{map[v]} + c;
         in_order[at] = decoded[3 * v + c];
         is_rounding = is_rounding && in_order[at] == original[at];
-        // What the floats of B leave of its numbers is no difference between A and B.
+        // Rounding of B's numbers to floats is no difference between A and B.
         if (are_finer) exact[at] -= exact_b[3 * v + c] - static_cast<double>(in_order[at]);
       }
     }
@@ -237,7 +237,7 @@ rlpc::InputResult<rlpc::Distortion> compare(const rlpc::ComparisonPair& pair,
   return rlpc::Distortion{metrics.result(), surface.result(), is_rounding};
 }
 
-// The shortest text that reads back as the same value.
+// Returns the shortest text that reads back as the same value.
 std::string digits(double value) {
   char text[64];
   const auto [end, ec] = std::to_chars(text, text + sizeof text, value);

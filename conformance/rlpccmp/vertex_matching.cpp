@@ -11,7 +11,7 @@
 namespace rlpc {
 namespace {
 
-// One index per line, a permutation of 0 .. num_vertices - 1.
+// Reads one index per line, a permutation of 0 .. num_vertices - 1.
 InputResult<std::vector<std::uint32_t>> read_order_map(const std::string& path,
                                                        std::uint32_t num_vertices) {
   constexpr std::size_t kMostLineBytes = 32;

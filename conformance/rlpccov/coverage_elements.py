@@ -1,4 +1,4 @@
-"""Which values of a syntax element are goals, from its descriptor and the requirements on it."""
+"""Goals among the values of a syntax element, from its descriptor and the requirements on it."""
 
 import ast
 
@@ -94,7 +94,7 @@ def counts_of_loop(test):
 
 
 def apply_settings(target):
-    """What coverage_goals.json adds to the goals; each of its entries has to match a site."""
+    """Goals that coverage_goals.json adds; each of its entries must match a site."""
     for name, entry in target.settings.get("elements", {}).items():
         sites = [s for s in target.sites if isinstance(s, Element) and s.element == name]
         for site in _found(sites, name):

@@ -1,4 +1,4 @@
-"""What one stream exercises: runs it, and packs what was seen for its sidecar.
+"""Measures what one stream exercises: runs it, and packs the result for its sidecar.
 
 A measurement is a dictionary for JSON:
     specification   digest of all goal ids; measurements of another specification do not compare
@@ -65,7 +65,7 @@ def measure(goals, data):
 
 
 def _run_others(decoder, target, has_attributes):
-    """What is run after decoding in order; lists count only if nothing has broken a rule."""
+    """Calls made after decoding in order; lists count only if nothing has broken a rule."""
     good = [_keeps_rules(decoder, name) for name in target.entries[1:]
             if has_attributes or name != specdec.WITH_ATTRIBUTES]
     if all(good):

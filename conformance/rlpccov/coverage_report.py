@@ -1,4 +1,4 @@
-"""What a set of streams reaches together, and the pages of conformance/matrix that say so."""
+"""Coverage of a set of streams, and the pages of conformance/matrix that report it."""
 
 import re
 
@@ -221,7 +221,7 @@ def rules_page(result, sidecars):
 
 
 def widths_page(result):
-    """The widest result in each clause beside what the clause states: (text, headline)."""
+    """The widest result in each clause and the width that the clause states: (text, headline)."""
     widest = {}
     computed = total = 0
     for key, function in result.goals.functions.items():

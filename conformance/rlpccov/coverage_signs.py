@@ -1,4 +1,4 @@
-"""Which values of the program can be negative, as far as its text shows."""
+"""Finds the values of the program that can be negative, as far as its text shows."""
 
 import ast
 

@@ -53,7 +53,7 @@ class Waivers:
         return missing, waived
 
     def complaints(self, all_goals, reached):
-        """What is wrong with the waivers themselves."""
+        """Returns what is wrong with the waivers themselves."""
         found = []
         for entry, regex in zip(self.entries, self._patterns):
             matching = [g for g in all_goals if regex.match(g)]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What rlpccov counts, on small programs and on streams; and its waivers.
+"""Tests the counts of rlpccov, on small programs and on streams; and its waivers.
 
     rlpccov_test.py --bin BUILD/bin [unittest arguments, such as Counting]
 """
@@ -69,7 +69,7 @@ class FolderTest(unittest.TestCase):
         return coverage_measure.Goals(target)
 
     def reached(self, goals, data, function):
-        """What follows FUNCTION/ in the ids of the goals that a stream reaches."""
+        """Returns the part after FUNCTION/ in the ids of the goals that a stream reaches."""
         found = goals.reached(coverage_measure.measure(goals, data))
         return {g[len(function) + 1:] for g in found if g.startswith(function + "/")}
 

@@ -1,4 +1,4 @@
-"""From streams to recipes."""
+"""Converts streams to recipes."""
 
 import sys
 

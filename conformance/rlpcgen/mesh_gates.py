@@ -57,7 +57,7 @@ class MeshFollower:
         for i, t in enumerate(self._triangles):
             for k in range(3):
                 self._by_edge.setdefault((t[k], t[(k + 1) % 3]), []).append(i)
-        self._mesh_vertex = []  # by decoded vertex
+        self._mesh_vertex = []  # [decoded vertex]
         self._decoded = {}
 
     def _instance(self, vertex):

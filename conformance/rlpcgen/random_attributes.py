@@ -2,7 +2,7 @@
 
 
 class AttributePlan:
-    """What the attributes of a random stream are like."""
+    """Character of the attributes of a random stream."""
 
     def __init__(self, numbers):
         n = numbers
@@ -12,13 +12,13 @@ class AttributePlan:
         self.seam_percent = n.pick([0, 5, 50, 100])
         self.diagonal_percent = n.pick([0, 20, 90])
         self.same_percent = n.pick([10, 60])
-        self.width = n.between(0, 12)  # of residuals, in bits
+        self.width = n.between(0, 12)  # residuals, in bits
 
 
 class AttributeSource:
     """Values of the elements of attribute units, for a source with numbers, near and residual."""
 
-    _names = 0  # of the unit
+    _names = 0  # number of names in the unit
     _name = b""
 
     def _num_attribute_sets_minus1(self, ns, indices, arguments):

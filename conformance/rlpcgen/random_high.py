@@ -6,7 +6,7 @@ import random_streams
 
 
 class HighPlan(random_main.MainPlan):
-    """What a random stream of the High profile is like."""
+    """Character of a random stream of the High profile."""
 
     def __init__(self, numbers):
         super().__init__(numbers)
@@ -14,7 +14,7 @@ class HighPlan(random_main.MainPlan):
         self.rigs_percent = n.pick([0, 30, 60])  # shared rigs before a GOF
         if self.rigs_percent:
             self.gof_frames = n.pick([1, 3])
-        self.tracks_percent = n.pick([50, 100])  # of the GOFs that can use a shared rig
+        self.tracks_percent = n.pick([50, 100])  # per cent of the GOFs that can use a shared rig
         self.present_percent = n.pick([100, 70, 0])  # trajectories that occur in a GOF
         self.local_groups = n.pick([0, 0, 1, n.between(0, 3)])
         self.frames_percent = n.pick([0, 0, 30, 100])  # share of inter GOFs
@@ -25,10 +25,10 @@ class HighPlan(random_main.MainPlan):
 class HighSource(random_attributes.AttributeSource, random_main.MainSource):
     """Values of the elements that the Main profile does not have, too."""
 
-    temporal_layer = 0  # of the slice
-    ends_gof = False  # by the frame unit
-    unit_frames = 1  # of the frame unit
-    clip_end = 0  # of the last clip of a table
+    temporal_layer = 0  # layer of the slice
+    ends_gof = False  # the frame unit ends the GOF
+    unit_frames = 1  # frames in the frame unit
+    clip_end = 0  # end of the last clip of a table
 
     def _profile_idc(self, ns, indices, arguments):
         return 2
@@ -214,7 +214,7 @@ class HighSource(random_attributes.AttributeSource, random_main.MainSource):
 
 
 def _offset(ns):
-    """Of the entry of an explicit pattern that is being written."""
+    """Offset of the entry of an explicit pattern that is being written."""
     return ns["pattern_offset_minus1"][-1] + 1
 
 
@@ -290,7 +290,7 @@ class HighSequence(random_main.MainSequence):
                     break
             if most[layer] > 0:
                 place += source.unit_frames - 1
-            # Where no period is cut off, the order stays.
+            # The order stays if no period is cut off.
             if (ns["open_end_flag"] and self._n.chance(10) and place + 1 < ns["NumGofFrames"]
                     and sorted(ns["FrameOrder"][:place + 1]) == list(range(place + 1))
                     and place % ns["PatternPeriod"] == 0):
@@ -323,7 +323,7 @@ class HighSequence(random_main.MainSequence):
             del left[t][:source.unit_frames]
 
     def _unit_frames(self, place):
-        """How many frames share a unit that begins at a place."""
+        """Number of frames in a unit that begins at a place."""
         ns = self._writer.ns
         if ns["num_layer_groups_minus1"] > 0 or self._n.chance(50):
             return 1

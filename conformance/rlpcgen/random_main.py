@@ -4,7 +4,7 @@ import random_streams
 
 
 class MainPlan(random_streams.Plan):
-    """What a random stream of the Main profile is like."""
+    """Character of a random stream of the Main profile."""
 
     def __init__(self, numbers):
         super().__init__(numbers)

@@ -17,11 +17,11 @@ MAX_RATE_MINUS1 = 4294967294  # R-HDR-03
 
 
 class Plan:
-    """What a random stream is like."""
+    """Character of a random stream."""
 
     def __init__(self, numbers):
         n = self.numbers = numbers
-        self.deep = n.chance(2)  # as many components as a level allows
+        self.deep = n.chance(2)  # use as many components as a level allows
         self.reuse = int(n.chance(40))
         self.triangles = n.pick([0, 1, 2, n.between(3, 12), n.between(8, 90)])
         self.degenerate = n.pick([0, 0, 0, n.between(1, 4)])
@@ -221,7 +221,7 @@ class RandomSource:
 
     _spatial_residual = _temporal_residual
 
-    # What follows a GOF, and the rest.
+    # Units after a GOF, and the rest.
 
     def _per_frame_flag(self, ns, indices, arguments):
         return self.numbers.between(0, 1)

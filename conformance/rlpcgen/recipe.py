@@ -222,7 +222,7 @@ def parse(path, text, load):
 
 
 def load(path):
-    """The recipe of a file; a twin is looked for in all areas of all tiers, or beside it."""
+    """The recipe of a file; a twin is looked for in all areas of all tiers, or next to it."""
     path = pathlib.Path(path)
     try:
         text = path.read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""From recipes to streams: the values of syntax elements, given or inferred."""
+"""Converts recipes to streams: the values of syntax elements, given or inferred."""
 
 import zlib
 
@@ -25,7 +25,7 @@ _PSEUDO = set(_ABSOLUTE) | {"cluster", "gates", "mesh", "triangles", "json", "de
 # The elements with which a component begins, unless that one comes directly before.
 _FIRST_OF_COMPONENT = {"trajectory_flag": None, "scale_idx_delta": "trajectory_flag",
                        "spatial_bits_delta": "scale_idx_delta"}
-_NEXT_SEED = 1000003  # from one repetition of a unit to the next
+_NEXT_SEED = 1000003  # step from one repetition of a unit to the next
 _STREAM = ("version_major", "version_minor", "signature", "cut", "keep", "append", "flip")
 
 

@@ -61,7 +61,7 @@ def expected(data):
 
 
 class Recipes(unittest.TestCase):
-    """What a recipe says is in the stream."""
+    """Tests that streams have the values of their recipes."""
 
     def breaks(self, rule, text):
         found = expected(build(text))
@@ -202,7 +202,7 @@ class Meshes(unittest.TestCase):
 
 
 def _shape(triangles):
-    """What does not depend on the numbering: how many triangles each edge and vertex has."""
+    """Properties that do not depend on numbering: numbers of triangles of edges and vertices."""
     count = {}
     for t in triangles:
         for k in range(3):
@@ -285,7 +285,7 @@ class RandomHigh(RandomTest):
 
 
 class AttributeUnits(unittest.TestCase):
-    """What recipes say of attributes, and what they leave open (Annex F)."""
+    """Tests attributes in recipes, given and left open (Annex F)."""
 
     TEXT = TETRAHEDRON.replace("unit GOF", """unit ATTRIBUTES
   attribute_name = uv0 ä
@@ -330,7 +330,7 @@ unit GOF""")
 
 
 class Sidecars(unittest.TestCase):
-    """What is expected of released streams."""
+    """Tests the expectations of released streams."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="rlpcgen-test-")
@@ -409,7 +409,7 @@ class StressTier(unittest.TestCase):
 
 
 class Decompiling(unittest.TestCase):
-    """From a stream to a recipe, and back to the same bytes."""
+    """Tests conversion of a stream to a recipe, and back to the same bytes."""
 
     def back(self, data):
         text = decompile.Decompiler(PROGRAM).recipe(data, {"title": "Again"})

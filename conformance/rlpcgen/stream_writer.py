@@ -58,7 +58,7 @@ def _element_calls(functions):
 
 @functools.lru_cache(maxsize=None)
 def writing_code(program):
-    """What StreamWriter runs; made once for many streams."""
+    """The program that StreamWriter runs; made once for many streams."""
     return program.code(transform=_element_calls)
 
 
@@ -164,10 +164,10 @@ class StreamWriter:
         self.frame_hashes = []
         self.running_hash = 0
         self._num_crcs = 0  # hashes of frames in the unit
-        self._crcs = []  # those that are known once it has been written: (number, place)
-        self._first_frame_crcs = []  # those that the whole stream gives: (bit position, unit)
+        self._crcs = []  # known once the unit has been written: (number, place)
+        self._first_frame_crcs = []  # known from the whole stream: (bit position, unit)
         self._unit_start = 0
-        self._decoded_frames = 0  # of an inter GOF
+        self._decoded_frames = 0  # number of decoded frames of an inter GOF
         self._counts_gof = False  # the last GOF is in gof_frames
 
     # Bits.
@@ -331,7 +331,7 @@ class StreamWriter:
         if code in (ns["GOF"], ns["RIG"]):
             self._finish_rig()
         if code == ns["GOF_INDEX"] and ns.get("open_end_flag"):
-            ns["NumFrames"] = ns["NumParsedFrames"]  # as random access knows it
+            ns["NumFrames"] = ns["NumParsedFrames"]  # the number that random access knows
         self.source.unit_code = code
         start = self._unit_start = len(self.data)
         ns["unit_header"]()
@@ -439,7 +439,7 @@ class StreamWriter:
                 ns["NextPlace"] = self._decoded_frames
                 ns["DecodeFrame"](ns["FrameOrder"][self._decoded_frames])
                 self._decoded_frames += 1
-            ns["NextPlace"] = 0  # decoding the GOF begins afresh
+            ns["NextPlace"] = 0  # decoding the GOF starts again
             ns["RoundFrame"](frame)
             crc = ns["HashOfPositions"](0)
             self.data[at:at + 4] = crc.to_bytes(4, "big")

@@ -27,7 +27,7 @@ import suite_streams
 
 INDEX = suite_streams.STRESS
 BATCH = 100
-PROFILES = {"v1.0": "baseline", "v1.1": "main", "v1.2": "high"}  # of the random streams of a version
+PROFILES = {"v1.0": "baseline", "v1.1": "main", "v1.2": "high"}  # random streams of a version
 _EXIT_CODES = {"accept": (0,), "reject": (1,), "unsupported": (2,), "either": (0, 1)}
 _VALIDATOR_CODES = {**_EXIT_CODES, "unsupported": (1, 2), "either": (1,)}
 _worker = None

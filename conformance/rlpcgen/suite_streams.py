@@ -59,7 +59,7 @@ def _profile(recipe):
 
 
 def _expect(recipe, found, place):
-    """What a decoder must do, from what the recipe announces and what the specification does."""
+    """Required result of a decoder, from the recipe's announcement and the specification."""
     announced = recipe.meta.get("expect")
     rules = recipe.meta["rules"]
     if announced == "either":
@@ -137,7 +137,7 @@ class Version:
         return (self.folder / SUMS).is_file()
 
 
-_version = None  # of a worker process
+_version = None  # version of a worker process
 
 
 def _start(folder, spec):

@@ -28,7 +28,7 @@ SIDECARS = [json.loads(path.read_text(encoding="utf-8")) | {"path": path.with_su
 # Too much for the pseudo-code to decode: 2^17 vertices, 2^18 triangles, 2^22 values and more.
 LARGE = ("R-LVL-01", "R-LVL-02", "R-LVL-05")
 LARGE_STREAMS = ("LVL-0316x1", "LVL-0326x1", "LVL-0336x1", "LVL-0346x1", "LVL-0346x3")
-# What a decoder that leaves out the check may do where the pseudo-code cannot go on.
+# Results allowed for a decoder without the check if the pseudo-code cannot go on.
 INSTEAD = {
     "R-GOF-08": "def AddToCluster(v, cluster):\n"
                 "    if cluster == NumClusters:\n        cluster = cluster - 1\n"
@@ -72,7 +72,7 @@ class Decoder(specdec.Decoder):
 
 
 class SingleFaults(unittest.TestCase):
-    """Where one rule is not checked, the stream is decoded to its end."""
+    """The stream is decoded to its end if one rule is not checked."""
 
     def test_nothing_else_is_wrong(self):
         tried = 0
@@ -94,7 +94,7 @@ class _WithoutOverrun(ast.NodeTransformer):
 
 
 class Overruns(unittest.TestCase):
-    """Where CheckOverrun( ) is left out, another rule is broken first."""
+    """Another rule is broken first if CheckOverrun( ) is left out."""
 
     STREAMS = {"RC-0302x1": "connectivity_section", "RC-0302x2": "connectivity_section",
                "RC-0303x1": "cluster_headers", "RC-0303x2": "cluster_map",

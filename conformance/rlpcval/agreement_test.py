@@ -57,7 +57,7 @@ def damaged(stream, numbers):
 
 
 class Agreement(ToolsTest):
-    SEEDS = 25  # of each profile
+    SEEDS = 25  # per profile
     FAULTS = 6  # damaged copies per stream
 
     def verdict_of_decoder(self, path):

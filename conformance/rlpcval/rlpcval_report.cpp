@@ -107,7 +107,7 @@ void print_finding(std::FILE* out, const Finding& f) {
   if (f.consequence) print_wrapped(out, "Possibly a consequence of damage found before.");
 }
 
-// "2 errors", "1 warning"
+// Returns "2 errors" or "1 warning".
 std::string counted(std::uint64_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }

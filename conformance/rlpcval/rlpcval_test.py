@@ -149,7 +149,7 @@ def repaired(data):
 class Specification(ToolsTest):
     """On damaged streams, the rule at which the specification stops is the first of rlpcval."""
 
-    COUNT = 75  # of each profile
+    COUNT = 75  # per profile
     SEED = 7
 
     def encode_small(self, profile):

@@ -7,10 +7,10 @@
 namespace rlpc {
 
 struct RuleExplanation {
-  const char* id;           // of a rule of the specification, or of a warning
-  const char* clause;       // that states it
+  const char* id;           // rule of the specification, or warning
+  const char* clause;       // clause that states the rule
   const char* explanation;  // what is wrong, in plain words
-  const char* cause;        // where it usually comes from
+  const char* cause;        // usual cause
   const char* remedy;       // what to do
 };
 

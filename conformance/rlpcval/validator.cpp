@@ -47,7 +47,7 @@ void StreamValidator::walk() {
     if (options_.progress) {
       options_.progress(static_cast<double>(offset) / static_cast<double>(units_.size()));
     }
-    // A decoder decodes the last GOF before it looks for what is missing.
+    // A decoder decodes the last GOF before it looks for missing units.
     if (offset >= units_.size()) {
       end_slices();
       check_due_frames();
@@ -67,8 +67,8 @@ void StreamValidator::walk() {
   }
 }
 
-// The offset after the unit at `offset`; or of the next units found, if there is none or its
-// size cannot be right.
+// Returns the offset after the unit at `offset`; or of the next units found, if there is none
+// or its size cannot be right.
 std::optional<std::uint64_t> StreamValidator::place_after(std::uint64_t offset,
                                                           const std::optional<UnitHeader>& unit,
                                                           bool sound) {
@@ -122,7 +122,7 @@ bool StreamValidator::may_stand_here(const UnitHeader& unit) const {
       return units_.version_minor() > 1 &&
              ((gof_.unit && gof_.may_have_frames) || behind_frame);
     }
-    case UnitType::kEndOfSequence:  // without a GOF, R-END-01
+    case UnitType::kEndOfSequence:  // R-END-01 if there is no GOF
       return seen(UnitType::kGof) || seen(UnitType::kRig);
     default:
       return false;
@@ -171,7 +171,7 @@ bool StreamValidator::visit(const UnitHeader& unit) {
     findings_.suspect(false);
   }
   const bool sound = units_.crc_holds(unit);
-  // A new type in an intact unit, not a damaged type.
+  // The type is new, not damaged, as the unit is intact.
   if (!known && sound) unsupported_ = true;
   if (unsupported_) {
     report_.complete = false;

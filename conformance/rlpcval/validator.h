@@ -35,18 +35,18 @@ enum class Severity : std::uint8_t {
 struct FindingUnit {
   std::uint32_t number = 0;  // counted from 0
   std::uint8_t type_byte = 0;
-  std::uint64_t offset = 0;  // of the unit, bytes from the start of the stream
+  std::uint64_t offset = 0;  // bytes from the start of the stream
 };
 
 struct Finding {
   Severity severity = Severity::kError;
-  const char* id = "";       // of a rule of the specification, or W-... of a warning
+  const char* id = "";       // rule of the specification, or W-... for a warning
   const char* element = "";  // syntax element or structure
   std::uint64_t bit_pos = 0;
   std::optional<FindingUnit> unit;  // none outside of units
   std::string detail;               // values, where they help
   bool consequence = false;         // may be a consequence of an earlier finding
-  bool stops_decoder = false;       // what a decoder that stops at the first error reports
+  bool stops_decoder = false;       // the one that a decoder reports, as it stops there
   std::uint32_t count = 1;          // occurrences of a warning; the position is of the first
 };
 
@@ -57,7 +57,7 @@ struct ValidationOptions {
 };
 
 struct ValidationReport {
-  // In the order of the decoding process, then those that need the whole stream.
+  // In the order of the decoding process; findings that need the whole stream come last.
   std::vector<Finding> findings;
   std::uint64_t omitted = 0;     // errors beyond max_findings
   std::optional<Error> stopped;  // limits exceeded or not readable: not checked completely
@@ -65,14 +65,14 @@ struct ValidationReport {
   std::optional<SequenceHeader> header;
   std::uint64_t bytes = 0;
   std::uint32_t units = 0;
-  std::uint32_t gofs = 0;    // whose sections were read to the end
-  std::uint32_t frames = 0;  // of these GOFs
+  std::uint32_t gofs = 0;    // GOFs whose sections were read to the end
+  std::uint32_t frames = 0;  // frames of these GOFs
   std::uint32_t attribute_sets = 0;
-  std::uint32_t hashed_frames = 0;          // whose positions match their hash
+  std::uint32_t hashed_frames = 0;          // frames whose positions match their hash
   std::uint32_t gofs_of_hashed_frames = 0;  // inter GOFs, each of which has a hash of its own
 
   std::size_t count(Severity severity) const;
-  // The finding that a decoder reports; null if it decodes the stream.
+  // Returns the finding that a decoder reports; null if it decodes the stream.
   const Finding* first_failure() const;
 };
 

@@ -23,7 +23,7 @@ void StreamValidator::asset(const UnitHeader& unit, const Payload& payload) {
     return findings_.unchecked(error.rule, error.element, error.bit_pos,
                                "decoders that leave assets alone do not notice");
   }
-  if (glb->empty()) return;  // of another asset_format
+  if (glb->empty()) return;  // another asset_format
   if (const auto view = view_glb(*glb); !view) {
     findings_.unchecked("R-AST-02", "asset_format", unit.payload_offset() * 8, view.error());
   }

@@ -27,7 +27,7 @@ void read_rest_order(ElementReader& r) {
   (void)r.u(1, "rest_counterparts_flag");
 }
 
-// 6.11 layer_groups( ). False if it is not known where it ends.
+// 6.11 layer_groups( ). Returns false if its end is not known.
 bool check_layer_groups(ElementReader& r, std::uint32_t num_layers,
                         std::uint32_t& layer_groups) {
   const std::int64_t groups = r.ue("num_layer_groups_minus1") + 1;

@@ -106,7 +106,7 @@ TEST_P(Damage, EveryFlippedBitWithAndWithoutFittingCrcs) {
   }
 }
 
-// Several places at a time, so that there is something to find after the first error.
+// Changes several places at a time, so that there is something to find after the first error.
 TEST_P(Damage, RandomBytes) {
   constexpr unsigned kSeeds = 3;
   for (unsigned seed = 0; seed < kSeeds; ++seed) {

@@ -26,8 +26,7 @@ class ElementReader {
   void byte_alignment();
   void expect_end();
 
-  // Reports a rule at the last element, unless that could not be read. True if `condition`
-  // holds.
+  // Reports a rule at the last element, unless that could not be read. Returns `condition`.
   bool require(bool condition, const char* rule, const std::string& allowed);
   bool supported(bool condition, const char* rule, const std::string& allowed);
 

@@ -15,9 +15,9 @@ class FindingList {
   FindingList(ValidationReport& report, std::size_t max_findings)
       : report_(report), max_findings_(max_findings) {}
 
-  // Later findings are about this unit.
+  // Sets the unit of later findings.
   void in_unit(const std::optional<FindingUnit>& unit) { unit_ = unit; }
-  // Later findings may be consequences of earlier ones.
+  // Sets whether later findings may be consequences of earlier ones.
   void suspect(bool suspect) { suspect_ = suspect; }
   bool suspect() const { return suspect_; }
 
@@ -28,7 +28,7 @@ class FindingList {
                  std::string detail);
   void warning(const char* id, const char* element, std::uint64_t bit_pos, std::string detail);
 
-  // Errors and unsupported features so far, including those not listed.
+  // Number of errors and unsupported features so far, including those not listed.
   std::uint64_t failures() const { return failures_; }
 
  private:
@@ -39,7 +39,7 @@ class FindingList {
   std::size_t max_findings_;
   std::optional<FindingUnit> unit_;
   bool suspect_ = false;
-  bool stopped_ = false;  // a decoder would have
+  bool stopped_ = false;  // a decoder would have stopped
   std::uint64_t failures_ = 0;
 };
 

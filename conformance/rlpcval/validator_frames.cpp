@@ -51,7 +51,7 @@ bool check_explicit_pattern(ElementReader& r, FramePattern& pattern) {
          r.require(depth_at[period] == 0, "R-FRM-06", "the last frame of a period has depth 0");
 }
 
-// 6.14.1 frame_pattern( ). False if what follows cannot be read.
+// 6.14.1 frame_pattern( ). Returns false if elements after it cannot be read.
 bool check_frame_pattern(ElementReader& r, FramePattern& pattern) {
   pattern.kind = static_cast<FramePattern::Kind>(r.u(2, "frame_pattern_idc"));
   if (pattern.kind == FramePattern::kDyadic) {
@@ -137,7 +137,7 @@ bool check_frame_header(ElementReader& r, const SliceCounts& counts) {
     good &= r.require(r.ue("unit_frames_minus1") < std::int64_t{counts.frames}, "R-FRM-09",
                       at_most(counts.frames - 1));
   }
-  // Whether these frames can follow, and what depends on it, parsing checks.
+  // Parsing checks whether these frames can follow.
   return good && r.readable();
 }
 

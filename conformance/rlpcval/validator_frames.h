@@ -8,11 +8,11 @@
 
 namespace rlpc {
 
-// 6.14 frames_of_gof( ). num_layers: of the mesh; 0 if not known.
+// 6.14 frames_of_gof( ). num_layers: layers of the mesh; 0 if not known.
 bool check_frames(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
                   GofHeaderCheck& gof);
 
-// 6.14.2 frame_unit( ), up to its section. counts: of the GOF.
+// 6.14.2 frame_unit( ), up to its section. counts: the groups and layers of the GOF.
 bool check_frame_header(ElementReader& r, const SliceCounts& counts);
 
 }  // namespace rlpc

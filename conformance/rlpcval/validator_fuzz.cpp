@@ -1,6 +1,6 @@
 // Fuzzes the validator, and compares it with the decoder: the error at which a decoder stops is
-// the one that the validator says it stops at. The first byte of an input says whether CRCs are
-// repaired; otherwise hardly any input would get past them.
+// the one that the validator reports as such. The first byte of an input decides whether CRCs
+// are repaired; otherwise few inputs would pass them.
 
 #include <cstdio>
 #include <cstdlib>

@@ -88,7 +88,7 @@ void GofWarnings::add(const ClusterGof& gof) {
   }
 }
 
-// What has vertices in a skinned GOF or shared rig.
+// Warns about the parts of a skinned GOF or shared rig that have vertices.
 void GofWarnings::add_rig(const SharedRig& rig) {
   std::vector<bool> in_use(rig.bones.size(), false);
   const OrderedMesh& mesh = (*context_.meshes)[rig.prediction];

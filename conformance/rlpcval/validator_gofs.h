@@ -1,5 +1,5 @@
-// Warnings about a GOF or shared rig: what is legal, but surely not intended; and the level
-// that it needs.
+// Warnings about a GOF or shared rig (legal, but surely not intended), and the level that it
+// needs.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ namespace rlpc {
 // Whether a trajectory is zero in all frames of a GOF.
 bool is_still(const Trajectory& trajectory);
 
-// rigs: those alive. bit_pos: of the payload of the GOF unit. needed: raised to what the GOF
-// needs.
+// Warns of a GOF. rigs: the live rigs. bit_pos: start of the payload of the GOF unit. needed:
+// raised to the level that the GOF needs.
 void warn_of_gof(const AccessUnit& access_unit, const StreamContext& context,
                  const RigSlots& rigs, std::uint64_t bit_pos, FindingList& findings,
                  Level& needed);
-// rigs: those alive, with this one.
+// Warns of a shared rig. rigs: the live rigs, this one included.
 void warn_of_rig(const SharedRig& rig, const StreamContext& context, const RigSlots& rigs,
                  std::uint64_t bit_pos, FindingList& findings, Level& needed);
 

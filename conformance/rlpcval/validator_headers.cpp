@@ -89,8 +89,7 @@ HeaderCheck check_sequence_header(ElementReader& r, std::uint32_t version_minor)
 
 namespace {
 
-// 6.5 gof( ), the elements of all profiles. False if one of them does not let its section be
-// read.
+// 6.5 gof( ), the elements of all profiles. Returns false if its section cannot be read.
 bool check_gof_frames(ElementReader& r, const SequenceHeader& header,
                       std::optional<std::uint32_t> expected_first_frame, GofHeaderCheck& gof) {
   const Level& level = header.level();
@@ -140,7 +139,7 @@ bool check_clusters(ElementReader& r, const SequenceHeader& header) {
   return check_alignment(r) && good;
 }
 
-// 6.11 layers_of_rig( ). False if it is not known where it ends.
+// 6.11 layers_of_rig( ). Returns false if its end is not known.
 bool check_layers(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
                   std::uint32_t& layer_groups) {
   (void)r.u(4, "damping_log2");
@@ -164,7 +163,7 @@ bool check_layers(ElementReader& r, const SequenceHeader& header, std::uint32_t 
   return r.readable();
 }
 
-// 6.11 rig_header( ). False if the section after it cannot be read.
+// 6.11 rig_header( ). Returns false if the section after it cannot be read.
 bool check_rig(ElementReader& r, const SequenceHeader& header, std::uint32_t num_layers,
                std::optional<SliceCounts>& counts) {
   const Level& level = header.level();
@@ -193,7 +192,7 @@ bool check_rig(ElementReader& r, const SequenceHeader& header, std::uint32_t num
   return check_alignment(r) && good;
 }
 
-// 6.11 levels_of_tracks( ). False if there are more temporal layers than levels.
+// 6.11 levels_of_tracks( ). Returns false if there are more temporal layers than levels.
 bool check_levels(ElementReader& r, std::uint32_t& temporal_layers) {
   const std::int64_t levels = r.u(3, "track_levels");
   if (levels == 0) return true;
@@ -238,7 +237,7 @@ bool check_bones(ElementReader& r, const SequenceHeader& header, std::uint32_t n
   return good && good_rig;
 }
 
-// Nothing if it could not be read.
+// Returns none if it could not be read.
 std::optional<GofKind> check_kind(ElementReader& r, const SequenceHeader& header) {
   std::int64_t kind = 0;
   if (header.profile_idc == kProfileMain) kind = r.u(1, "bones_flag");
@@ -309,7 +308,7 @@ bool check_slice_header(ElementReader& r, const SliceCounts& slices) {
 
 namespace {
 
-// 6.9 index_of_rigs( ). False if the index is not readable to its end.
+// 6.9 index_of_rigs( ). Returns false if the index is not readable to its end.
 bool check_index_of_rigs(ElementReader& r, std::uint32_t num_frames,
                          std::uint64_t max_memory_bytes, GofIndexCheck& index) {
   const std::int64_t num_rigs = r.ue("num_index_rigs");
@@ -362,7 +361,7 @@ GofIndexCheck check_gof_index(ElementReader& r, const SequenceHeader& header,
   const std::string lists = "the GOFs listed have " + std::to_string(next.first_frame) +
                             " frames in " + std::to_string(g) + " of " +
                             std::to_string(num_gofs) + " GOFs; ";
-  // Once is enough.
+  // Reports the rule once.
   if (good)
     good = r.require(g == num_gofs && next.first_frame == num_frames, "R-IDX-01", lists + sum);
   if (g < num_gofs) return index;

@@ -145,7 +145,7 @@ void StreamValidator::vertex_order(const UnitHeader& unit, const Payload& payloa
   if (!order) findings_.error(order.error());
 }
 
-// What is known of a GOF before reading it.
+// Records what is known of a GOF before reading it.
 void StreamValidator::begin_gof(const UnitHeader& unit) {
   index_.gofs.push_back({unit.offset, 0});
   gof_ = {};

@@ -1,4 +1,4 @@
-// 6.13: shared rigs, their use by GOFs, and what no GOF used.
+// 6.13: shared rigs, their use by GOFs, and their unused parts.
 #include "conformance/rlpcval/validator_rigs.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ RigSlots slots_of(const SeenRigs& rigs) {
   return slots;
 }
 
-// What is known of a shared rig before reading it.
+// Records what is known of a shared rig before reading it.
 void StreamValidator::begin_rig(const UnitHeader& unit) {
   rig_ = {};
   rig_.unit = unit;
@@ -97,7 +97,7 @@ void StreamValidator::doubt_models() {
   }
 }
 
-// Only where all GOFs could be read: the others may have used it.
+// Warns only if all GOFs could be read: others may have used the rig.
 void StreamValidator::release(const SeenRig& kept) {
   if (!kept.rig || findings_.failures() > 0 || !report_.complete) return;
   findings_.in_unit(kept.place);

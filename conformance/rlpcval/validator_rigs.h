@@ -14,14 +14,14 @@ namespace rlpc {
 
 struct SeenRig {
   std::shared_ptr<const SharedRig> rig;  // null: none that could be read
-  bool lost = false;                     // there is, or may be, one that could not be read
+  bool lost = false;                     // there is, or may be, a rig that could not be read
   bool suspect = false;
   FindingUnit place;
-  std::uint64_t bit_pos = 0;  // of the payload of its unit
-  bool is_used = false;       // by a GOF so far
-  std::vector<bool> moves;    // [trajectories] not still in all these GOFs
+  std::uint64_t bit_pos = 0;  // start of the payload of its unit
+  bool is_used = false;       // a GOF has used it
+  std::vector<bool> moves;    // [trajectory]: moves in one of these GOFs
 };
-using SeenRigs = std::array<SeenRig, kMaxRigs>;  // by rig_idx
+using SeenRigs = std::array<SeenRig, kMaxRigs>;  // [rig_idx]
 
 RigSlots slots_of(const SeenRigs& rigs);
 

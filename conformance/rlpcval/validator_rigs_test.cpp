@@ -1,4 +1,4 @@
-// What the validator finds of shared rigs and of the GOFs that use them.
+// Tests findings about shared rigs and the GOFs that use them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,12 +37,12 @@ TEST(ValidatorRigs, ReportsAllValuesOfARigHeader) {
   found.resize(4);
   EXPECT_EQ(found, (Ids{"R-LVL-06", "R-GOF-03", "R-BON-01", "R-BON-02"}));
   EXPECT_FALSE(report.complete);
-  // The GOFs that do not use it are read, and those of its successor.
+  // The GOFs that do not use it, and those of its successor, are read.
   EXPECT_EQ(report.gofs, 5U);
   EXPECT_EQ(report.hashed_frames, 10U);
 }
 
-// The elements of a skinned GOF with a shared rig.
+// Returns the elements of a skinned GOF with a shared rig.
 Bytes tracks(std::uint32_t gof_kind, std::uint32_t rig_idx, std::uint32_t num_local_groups) {
   BitWriter w;
   w.ue(0);
@@ -111,16 +111,16 @@ TEST(ValidatorRigs, SaysWhatIsMissingOrMisplaced) {
   StreamBytes stream = good;
   insert(stream, connectivity.offset, rig);
   EXPECT_EQ(ids(stream).at(0), "R-UNT-05");
-  // Between a GOF and its hash.
+  // A rig between a GOF and its hash.
   stream = good;
   insert(stream, hashes.at(3).offset, rig);
   EXPECT_TRUE(is_in(ids(stream), "R-HSH-03"));
-  // Of no use, but legal; without slices, all vertices follow its first bone.
+  // The rig is useless, but legal; without slices, all vertices follow its first bone.
   stream = good;
   insert(stream, hashes.at(7).end(), rig);
   EXPECT_EQ(ids(stream), (Ids{"W-BON-01", "W-MOD-01"}));
   EXPECT_TRUE(validate(stream).complete);
-  // Its slices are left.
+  // Only its slices remain.
   stream = good;
   erase(stream, rigs.at(1));
   EXPECT_EQ(ids(stream).at(0), "R-UNT-05");
@@ -161,7 +161,7 @@ TEST(ValidatorRigs, ReportsHashesThatFitAnotherRig) {
   payload.assign(payload.begin() + 5, payload.end() - 4);
   payload[0] = static_cast<std::uint8_t>(payload[0] & 0x1F);  // rig_idx 0
   const Ids found = ids(with_payload(good, rigs.at(1), payload));
-  EXPECT_TRUE(is_in(found, "R-MOD-01"));  // of the GOF that uses rig 5
+  EXPECT_TRUE(is_in(found, "R-MOD-01"));  // in the GOF that uses rig 5
   EXPECT_TRUE(is_in(found, "R-SLI-01") || is_in(found, "R-SLI-02") ||
               is_in(found, "R-HSH-02") || is_in(found, "R-RNG-01"));
 }

@@ -50,7 +50,7 @@ class StreamValidator {
   void read_payload(const UnitHeader& unit, bool sound);
   void sequence_header(const UnitHeader& unit, const Payload& payload);
   void check_limits();
-  // Of a GOF or shared rig.
+  // Returns the memory limit for a GOF or shared rig.
   MemoryLimit memory_limit() const;
   void connectivity(const UnitHeader& unit, const Payload& payload);
   void vertex_order(const UnitHeader& unit, const Payload& payload);
@@ -59,8 +59,7 @@ class StreamValidator {
   void gof_body(const UnitHeader& unit, const Payload& payload, const GofHeaderCheck& header);
   void slice(const UnitHeader& unit, const Payload& payload);
   void compare_frame_crcs(const AccessUnit& access_unit);
-  // No further slice can follow: the shared rig is complete, or the access unit except for
-  // its hash.
+  // Ends the slices: the shared rig is complete, or the access unit except for its hash.
   void end_slices();
   void end_gof();
   void check_due_frames();
@@ -75,7 +74,7 @@ class StreamValidator {
 
   // validator_attributes.cpp: attribute units.
   void attributes(const UnitHeader& unit, const Payload& payload);
-  // Reports it if not.
+  // Whether attribute units are allowed here; reports it if not.
   bool has_place_for_attributes(const UnitHeader& unit);
   void check_attribute_names(const UnitHeader& unit, const CodedAttributes& coded);
   void compare_first_frame(const AccessUnit& access_unit);
@@ -87,11 +86,11 @@ class StreamValidator {
   void begin_rig(const UnitHeader& unit);
   void rig(const UnitHeader& unit, const Payload& payload);
   void end_rig();
-  // Those of a GOF that has been read are in use.
+  // Marks the rig, bones and trajectories of a GOF that has been read as used.
   void use_rig(const SkinnedGof& gof);
-  // Units were lost: rigs may have been replaced.
+  // Marks all rigs as lost: units were lost, so rigs may have been replaced.
   void doubt_models();
-  // Warns of what no GOF used, of a rig that is replaced or at the end of the stream.
+  // Warns of what no GOF used in a rig that is replaced or at the end of the stream.
   void release(const SeenRig& kept);
   void end_rigs();
 
@@ -107,16 +106,16 @@ class StreamValidator {
   StreamUnits units_;
 
   // Units so far.
-  std::optional<UnitHeader> previous_;  // directly before; nothing after a gap
+  std::optional<UnitHeader> previous_;  // the unit directly before; none after a gap
   std::array<std::uint32_t, 256> seen_{};
   bool gap_ = false;          // units were lost
-  bool ended_ = false;        // an end_of_sequence unit was there
+  bool ended_ = false;        // there was an end_of_sequence unit
   bool unsupported_ = false;  // payloads may mean anything
 
   // Units before the first GOF.
   struct LeadingUnits {
     std::optional<HeaderCheck> header;
-    std::uint64_t header_bit_pos = 0;  // of the payload
+    std::uint64_t header_bit_pos = 0;  // start of the payload
     bool header_suspect = false;
     bool within_limits = true;
     bool has_connectivity = false;
@@ -127,7 +126,7 @@ class StreamValidator {
   };
   LeadingUnits lead_;
 
-  // What attributes were predicted from, until that frame has been decoded.
+  // The positions that attributes were predicted from, until that frame has been decoded.
   struct FirstFrame {
     std::uint32_t crc = 0;
     std::optional<FindingUnit> place;
@@ -138,7 +137,7 @@ class StreamValidator {
   // A GOF or shared rig. Parser: of its units, if those so far could be read.
   template <class Parser>
   struct Current {
-    std::optional<UnitHeader> unit;  // if it, or a slice of it, is directly before
+    std::optional<UnitHeader> unit;  // none unless it, or a slice of it, is directly before
     FindingUnit place;
     bool suspect = false;
     std::optional<SliceCounts> slice_counts;
@@ -149,24 +148,24 @@ class StreamValidator {
 
   // The GOF whose units were read last.
   struct CurrentGof : Current<AccessUnitParser> {
-    std::optional<std::uint32_t> expected_first_frame;  // nothing if it is not known
+    std::optional<std::uint32_t> expected_first_frame;  // none: not known
     std::uint32_t num_frames = 0;                       // 0: not known
     bool may_have_slices = false;                       // it is a skinned GOF, or unknown
     bool may_have_frames = false;                       // it is an inter GOF, or unknown
-    std::optional<AccessUnit> access_unit;              // if all units could be read
-    bool frames_due = false;                            // they are yet to be decoded
+    std::optional<AccessUnit> access_unit;              // none unless all units could be read
+    bool frames_due = false;                            // its frames are yet to be decoded
   };
   CurrentGof gof_;
 
   // The shared rig whose units were read last, and those that are kept.
   struct CurrentRig : Current<RigParser> {
-    std::optional<std::uint32_t> rig_idx;  // if it could be read
-    std::uint64_t bit_pos = 0;             // of its payload
+    std::optional<std::uint32_t> rig_idx;  // none: could not be read
+    std::uint64_t bit_pos = 0;             // start of its payload
   };
   CurrentRig rig_;
   SeenRigs rigs_;
   std::optional<RigRecons> recons_;
-  std::optional<std::uint32_t> next_frame_ = 0;  // nothing if it is not known
+  std::optional<std::uint32_t> next_frame_ = 0;  // none: not known
   bool frames_suspect_ = false;
   Level needed_{};  // the maximum over all GOFs
 
@@ -176,7 +175,7 @@ class StreamValidator {
     std::vector<RigLocation> rigs;  // all rig units
     bool rig_indices_known = true;
     std::vector<GofIndexCheck> checks;
-    std::uint64_t units_found = 0;  // those that index_distance leads to
+    std::uint64_t units_found = 0;  // units that index_distance leads to
   };
   Index index_;
 };

@@ -1,5 +1,5 @@
-// Findings that need the whole stream: a wrong index, and what is legal but surely not
-// intended.
+// Findings that need the whole stream: a wrong index, and warnings of legal but unintended
+// data.
 #include <algorithm>
 #include <string>
 

@@ -1,4 +1,4 @@
-// What the validator finds beyond the first error, and what decoders need not check.
+// Tests findings after the first error, and checks that decoders need not make.
 #include "conformance/rlpcval/validator.h"
 
 #include <gtest/gtest.h>
@@ -179,7 +179,8 @@ TEST(Validator, SaysWhatIsMissingOrTooMuch) {
   EXPECT_EQ(found, (Ids{"R-UNT-05", "R-UNT-05"}));
 }
 
-// The elements of the GOF unit of a skinned GOF up to its layers, and those of the layers.
+// Writes the elements of the GOF unit of a skinned GOF up to its layers, and those of the
+// layers.
 void put_bones(BitWriter& w, std::uint32_t num_bones_minus1, std::uint32_t rest_step_minus1,
                std::uint32_t num_component_groups, std::uint32_t prediction_idc) {
   w.ue(0);       // first_frame
@@ -256,11 +257,11 @@ TEST(Validator, SaysWhichSlicesAreMissingOrMisplaced) {
   stream = good;
   insert(stream, slices[2].offset, unit_bytes(good, slices[0]));
   EXPECT_EQ(ids(stream), Ids{"R-SLI-02"});
-  // The last slice, on which no other depends: legal, apart from the hash.
+  // Leaving out the last slice, on which no other depends, is legal except for the hash.
   stream = good;
   erase(stream, slices[7]);
   EXPECT_EQ(ids(stream), Ids{"R-HSH-02"});
-  // After the hash, and before any GOF.
+  // A slice after the hash, and one before any GOF.
   stream = good;
   insert(stream, units_of_type(good, UnitType::kGofHash).at(1).end(),
          unit_bytes(good, slices[7]));

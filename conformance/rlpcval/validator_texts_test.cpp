@@ -1,4 +1,4 @@
-// The validator's texts about its findings; and which metadata is a JSON text.
+// Tests the validator's texts about its findings, and its check that metadata is JSON.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -88,7 +88,7 @@ TEST(Json, TextsThatAreNotJson) {
   }
 }
 
-// As deep as a metadata unit can nest.
+// Nests as deep as a metadata unit can.
 TEST(Json, NestsWithoutEnd) {
   const std::string deep(1 << 20, '[');
   EXPECT_EQ(find_json_error(deep), deep.size());

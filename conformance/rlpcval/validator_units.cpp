@@ -11,7 +11,7 @@
 namespace rlpc {
 namespace {
 
-// Bytes that a search for units may run through, in lengths of the stream.
+// Bytes that searches for units may read, in lengths of the stream.
 constexpr std::uint64_t kSearchesOfStream = 64;
 
 std::uint32_t big_endian(const std::uint8_t* b) {
@@ -160,8 +160,8 @@ std::optional<std::vector<std::uint8_t>> StreamUnits::payload(const UnitHeader& 
   return bytes;
 }
 
-// From the end backwards: a chain is an end_of_sequence unit at the very end, or a unit of a
-// possible type after which a chain begins.
+// Finds chains from the end backwards: a chain is an end_of_sequence unit at the very end, or a
+// unit of a possible type after which a chain begins.
 bool StreamUnits::find_chains(std::uint64_t offset) {
   if (chains_from_ && *chains_from_ <= offset) return true;
   offset = std::min(offset, size());

@@ -17,15 +17,15 @@ class StreamUnits {
   StreamUnits(ByteSource& source, FindingList& findings, std::uint64_t max_memory_bytes)
       : source_(source), findings_(findings), max_memory_bytes_(max_memory_bytes) {}
 
-  // Signature and version. False if reading on is pointless.
+  // Reads signature and version. Returns false if reading on is pointless.
   bool stream_header();
-  // Limit of the payloads of critical units from now on: MaxUnitBytes of Annex B.
+  // Limits the payloads of critical units from now on to MaxUnitBytes of Annex B.
   void set_max_unit_bytes(std::uint64_t bytes) { max_unit_bytes_ = bytes; }
-  // The unit at a byte offset; none if its header or its end is missing.
+  // Returns the unit at a byte offset; none if its header or its end is missing.
   std::optional<UnitHeader> header_at(std::uint64_t offset);
   // Compares unit_crc, block by block.
   bool crc_holds(const UnitHeader& unit);
-  // None if it cannot be read, or needs more memory than allowed.
+  // Returns the payload; none if it cannot be read, or needs more memory than allowed.
   std::optional<std::vector<std::uint8_t>> payload(const UnitHeader& unit);
 
   // 6.2 IsKnownType( type ), or an ancillary unit.
@@ -33,7 +33,8 @@ class StreamUnits {
 
   // Whether a chain of units runs from `offset` to an end_of_sequence unit at the very end.
   bool begins_chain(std::uint64_t offset);
-  // The first offset from `offset` on where such a chain begins with a unit whose CRC matches.
+  // Returns the first offset, from `offset` on, where such a chain begins with a unit whose CRC
+  // matches.
   std::optional<std::uint64_t> next_chain(std::uint64_t offset);
   // Whether a unit of a possible type, with a matching CRC, is at the offset.
   bool is_unit(std::uint64_t offset);
@@ -41,14 +42,14 @@ class StreamUnits {
   // 0 until the version has been read.
   std::uint32_t version_minor() const { return version_minor_; }
   std::uint64_t size() const { return source_.size(); }
-  bool failed() const { return failed_; }  // to read
+  bool failed() const { return failed_; }  // reading failed
 
  private:
   bool read(std::uint64_t offset, std::span<std::uint8_t> out, const char* element);
   bool crc_of_unit(const UnitHeader& unit, std::uint32_t& stored, std::uint32_t& computed);
-  // Knows all chains that begin at `offset` or later; false if that takes too much memory.
+  // Finds all chains that begin at `offset` or later; false if that takes too much memory.
   bool find_chains(std::uint64_t offset);
-  bool in_chain(std::uint64_t offset) const;  // of those that are known
+  bool in_chain(std::uint64_t offset) const;  // in a chain that is known
   bool possible_type(std::uint8_t type_byte) const;
 
   ByteSource& source_;
@@ -59,10 +60,10 @@ class StreamUnits {
   bool failed_ = false;
   std::optional<std::uint64_t> chains_from_;
   std::vector<bool> chain_;  // [size - chains_from_]: begins a chain
-  // The last search: from where, and what it found.
+  // Start and result of the last search.
   std::optional<std::uint64_t> searched_from_;
   std::optional<std::uint64_t> found_;
-  std::uint64_t searched_bytes_ = 0;  // whose CRC was computed in searches
+  std::uint64_t searched_bytes_ = 0;  // bytes whose CRC was computed in searches
 };
 
 }  // namespace rlpc

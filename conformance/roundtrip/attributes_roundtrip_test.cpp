@@ -1,5 +1,4 @@
-// Attributes through writer and parser, and through encoder and decoder, against each other
-// (Annex F).
+// Tests that attributes survive writer and parser, and encoder and decoder (Annex F).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +39,7 @@ class Draw {
   explicit Draw(std::uint32_t seed) : engine_(seed) {}
   std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(engine_() % n); }
   bool chance(std::uint32_t percent) { return below(100) < percent; }
-  // Of any magnitude below 2^bits.
+  // Returns a residual of any magnitude below 2^bits.
   std::int32_t residual(std::uint32_t bits) {
     const auto magnitude =
         static_cast<std::int32_t>(engine_() >> (32 - below(bits + 1) - 1)) >> 1;
@@ -52,8 +51,8 @@ class Draw {
   std::mt19937 engine_;
 };
 
-// A grid, perhaps closed to a torus, with some triangles turned, left out or without area, and
-// some of any vertices.
+// Returns a grid, perhaps closed to a torus, with some triangles turned, left out or without
+// area, and some of random vertices.
 Mesh random_mesh(Draw& draw) {
   const std::uint32_t columns = 2 + draw.below(6);
   const std::uint32_t rows = 1 + draw.below(6);
@@ -268,8 +267,8 @@ Coded code(Draw& draw, const Mesh& mesh, const SourceAttributes& source,
   return result;
 }
 
-// The indices of the values of a decoded corner: in the source, and in the decoded set, which
-// has values of vertices where those of their corners are the same.
+// Returns the indices of the values of a decoded corner in the source and in the decoded set,
+// which has values of vertices if those of their corners are the same.
 std::array<std::size_t, 2> values_of(const Coded& coded, const SourceAttribute& source,
                                      std::uint32_t c) {
   const std::uint32_t input = coded.corner_map[c];
@@ -350,7 +349,7 @@ TEST(AttributesRoundtrip, TextureCoordinatesAndNormalsComeNear) {
     }
     const std::uint32_t n = in.num_components;
     const bool is_smoothing = coded.decoded.header.kind == ValueKind::kSmoothing;
-    std::map<std::size_t, std::size_t> source_of;  // of each sector
+    std::map<std::size_t, std::size_t> source_of;  // [sector]
     for (std::uint32_t c = 0; c < coded.corner_map.size(); ++c) {
       const auto [from, to] = values_of(coded, in, c);
       if (is_smoothing) {

@@ -1,4 +1,4 @@
-// Writer and parser of cluster GOFs against each other (clause 6.5), and what both reconstruct.
+// Tests writer and parser of cluster GOFs against each other (clause 6.5), and reconstruction.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace rlpc {
 namespace {
 
 constexpr std::uint64_t kAmple = std::uint64_t{1} << 30;
-constexpr int kResidualBits = floor_log2(kMaxResidual) + 1;  // of a magnitude
+constexpr int kResidualBits = floor_log2(kMaxResidual) + 1;  // bits of a magnitude
 
 // Random legal GOFs. Fields take the ends of their ranges often.
 class Generator {
@@ -137,7 +137,7 @@ class Generator {
   std::mt19937 random_;
 };
 
-// The parts first: they say where a difference is.
+// Compares the parts first: they show where a difference is.
 void expect_equal(const ClusterGof& a, const ClusterGof& b) {
   EXPECT_EQ(a.cluster_of_vertex, b.cluster_of_vertex);
   ASSERT_EQ(a.seed_tracks.size(), b.seed_tracks.size());
@@ -213,7 +213,7 @@ TEST(ClusterGofRoundTrip, LongGofsOfFewVerticesComeBack) {
   }
 }
 
-// The largest and smallest residuals in a row drive every running mean to its ends.
+// Alternating largest and smallest residuals drive every running mean to its limits.
 TEST(ClusterGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
   Generator generator(1);
   ClusterGof gof = generator.gof(40, 8, 1);
@@ -237,7 +237,7 @@ TEST(ClusterGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
   }
 }
 
-// The smallest max_memory_bytes with which the parser accepts a GOF, which is its estimate, or
+// Returns the smallest max_memory_bytes with which the parser accepts a GOF: its estimate, or
 // up to 2 % more.
 std::uint64_t estimated_memory(const Generator& from, const ClusterGof& gof,
                                const std::vector<std::uint8_t>& payload) {
@@ -253,7 +253,7 @@ std::uint64_t estimated_memory(const Generator& from, const ClusterGof& gof,
   return enough;
 }
 
-// Peak memory of parsing and reconstruction, less what they need for any GOF.
+// Measures the peak memory of parsing and reconstruction, less the memory needed for any GOF.
 void expect_memory_within_estimate(const Generator& from, const ClusterGof& gof) {
   const std::vector<std::uint8_t> payload = write_cluster_gof(gof, from.header, from.topology);
   const std::uint64_t estimate = estimated_memory(from, gof, payload);
@@ -281,7 +281,7 @@ TEST(GofMemory, StaysWithinWhatIsComparedWithTheLimit) {
   }
 }
 
-// Most of it is for each component of each cluster, however few values it has.
+// Each component of each cluster takes most of the memory, however few values it has.
 TEST(GofMemory, OfManyComponentsOfSmallClustersIsCounted) {
   for (const int spatial_bits : {1, 16, kMaxSpatialBits}) {
     for (const int temporal_bits : {1, 16, kMaxTemporalBits}) {

@@ -96,7 +96,7 @@ std::vector<Frame> picked(const std::vector<Frame>& frames,
   return result;
 }
 
-// The coarse mesh in output order, its vertices as output indices.
+// Returns the coarse mesh in output order, its vertices as output indices.
 CoarseMesh expected_mesh(const StreamBytes& stream, std::uint32_t layers) {
   StreamReader reader(memory_source(stream), {});
   EXPECT_TRUE(reader.open());

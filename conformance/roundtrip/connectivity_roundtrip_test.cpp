@@ -1,4 +1,4 @@
-// Writer and parser of the connectivity unit against each other (clauses 6.4 and 8.7).
+// Tests writer and parser of the connectivity unit against each other (clauses 6.4 and 8.7).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct Mesh {
   Triangles triangles;
 };
 
-// The rotation of a triangle that starts with its smallest index.
+// Returns the rotation of a triangle that starts with its smallest index.
 Triangle canonical(Triangle t) {
   const Triangle turned_once{t[1], t[2], t[0]};
   const Triangle turned_twice{t[2], t[0], t[1]};
@@ -182,7 +182,7 @@ Mesh moebius_strip(std::uint32_t n) {
   return mesh;
 }
 
-// 0 .. n - 1
+// Returns a number from 0 to n - 1.
 std::uint32_t draw(std::mt19937& rng, std::uint32_t n) {
   return static_cast<std::uint32_t>(rng()) % n;
 }
@@ -298,7 +298,7 @@ class FarJoins : public Trace {
   int num_near = 0;
 };
 
-// Triangles across the open end of a long tube, and a small closed surface.
+// Tests triangles across the open end of a long tube, and a small closed surface.
 TEST(ConnectivityRoundTrip, JoinsAreNearOrFar) {
   Mesh mesh = grid(6000, 2, true, false);
   mesh.triangles.push_back({0, 3000, 1500});

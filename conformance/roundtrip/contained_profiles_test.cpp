@@ -1,5 +1,5 @@
-// A profile that contains another is never larger at the same target, by more than what tells
-// the profiles apart in the stream.
+// Tests that streams of a profile that contains another are larger at the same target at most
+// by the bytes that distinguish the profiles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,12 +17,12 @@ namespace rlpc {
 namespace {
 
 constexpr double kMostLarger = 1.01;
-// Of an index that lists shared rigs, and of flags of the sequence and of each GOF.
+// Bytes of an index that lists shared rigs, and of flags of the sequence and of each GOF.
 constexpr std::size_t kMostMore = 6;
 
 using Frames = std::vector<std::vector<float>>;
 
-// Random animations: meshes of all kinds, and motion that no basis suits, or some do.
+// Random animations: meshes of all kinds, and motion that suits some basis or none.
 class RandomAnimation {
  public:
   // larger: 50,000 to 150,000 positions; such searches may be given up.
@@ -147,7 +147,7 @@ TEST(ContainedProfiles, AreNeverSmaller) {
   }
 }
 
-// Where searches were once given up too early.
+// Searches of these seeds were once given up too early.
 TEST(ContainedProfiles, AreNeverSmallerOnLargerMeshes) {
   for (const unsigned seed : {7U, 28U, 39U}) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);

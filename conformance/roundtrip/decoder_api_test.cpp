@@ -1,4 +1,4 @@
-// The decoder as an application uses it: in order, by seeking, with limits, with a trace.
+// Tests the decoder as an application uses it: in order, by seeking, with limits, with a trace.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ UnitPlace unit_of_type(const StreamBytes& bytes, UnitType type) {
   return {};
 }
 
-// GOFs of 4 frames without an index, one hash for each.
+// Returns GOFs of 4 frames without an index, with one hash each.
 StreamBytes plain_stream() {
   MemoryFrames source = bending_tube(6, 18);
   EncoderSettings settings;
@@ -196,7 +196,7 @@ TEST(Decoder, GivesWhatTheEncoderWasGiven) {
   };
   EXPECT_EQ(turned({decoder->triangles().begin(), decoder->triangles().end()}),
             turned(source.triangles()));
-  // The vertex order of the input: within the error, each is at its place.
+  // With the vertex order of the input, each vertex is in its place, within the error.
   const std::vector<Frame> frames = decode_all(*decoder);
   std::vector<float> original(frames[0].size());
   for (std::uint32_t f = 0; f < 6; ++f) {
@@ -258,7 +258,7 @@ TEST(Decoder, ReportsABadIndexAgain) {
   for (int i = 0; i < 2; ++i) EXPECT_FALSE(decoder->seek(decoder->header().num_frames - 1));
 }
 
-// Where each element was seen first.
+// Records the first place of each element.
 class FirstPlaces final : public Trace {
  public:
   void begin(const char* /*structure*/, std::uint64_t /*bit_pos*/) override {}
@@ -380,7 +380,7 @@ TEST(Hashes, AWrongOneIsReportedWithItsFrame) {
   EXPECT_EQ(frame_index, 6U);
 }
 
-// Frames that are compared with a hash, for each frame from `first` on.
+// Returns the number of frames compared with a hash, for each frame from `first` on.
 std::vector<std::uint32_t> compared_from(Decoder& decoder, std::uint32_t first) {
   EXPECT_TRUE(decoder.seek(first));
   Frame frame = frame_buffer(decoder);

@@ -1,4 +1,4 @@
-// The encoder as an application uses it: what it refuses, and edge cases.
+// Tests the encoder as an application uses it: refused settings, and edge cases.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 bool discard(std::span<const std::uint8_t> /*bytes*/) { return true; }
 
-// The message of the error, or "" if there is none.
+// Returns the message of the error, or "" if there is none.
 std::string error_of(FrameSource& source, const EncoderSettings& settings,
                      const ByteSink& sink = discard) {
   const auto report = encode(source, settings, sink);
@@ -225,7 +225,7 @@ TEST(Settings, NoLevelHasMoreClustersBonesOrComponents) {
             "no level allows more than 1024 components (--components)");
 }
 
-// Larger than anything in the animation, and so large that sums of it overflow.
+// Targets larger than anything in the animation, and so large that sums overflow.
 TEST(Settings, ATargetMayAllowAnyError) {
   for (const auto kind : {Target::kKg, Target::kBpvf, Target::kMaxError}) {
     for (const double value : {1e6, 1e300, std::numeric_limits<double>::max()}) {
@@ -248,7 +248,7 @@ TEST(Settings, AsManyClustersAsAskedForAreMade) {
 }
 
 TEST(Encoder, RefusesWhatNoLevelAllows) {
-  // 16384 frames are the most of a GOF.
+  // A GOF has at most 16384 frames.
   std::vector<std::vector<float>> frames(16385, std::vector<float>{0.0F, 1.0F, 2.0F});
   MemoryFrames source({}, std::move(frames));
   EncoderSettings settings;
@@ -430,8 +430,7 @@ TEST(Encoder, AcceptsEdgeCases) {
   }
 }
 
-// Factors of the finest steps would not fit their widths; then steps are as fine as they can
-// be.
+// Factors would not fit their widths at the finest steps; steps are then as fine as possible.
 TEST(Encoder, IsExactWhereMoreThanThatIsAskedFor) {
   for (const std::uint32_t bones : {1U, 4U}) {
     for (const Prediction prediction : {Prediction::kNone, Prediction::kLayers}) {

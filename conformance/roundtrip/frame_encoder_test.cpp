@@ -1,4 +1,4 @@
-// Frames that come one by one: the stream, the target of each GOF, and what is refused.
+// Tests frames that arrive one by one: the stream, the target of each GOF, and refused frames.
 #include "encoder/frame_encoder.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 
 bool discard(std::span<const std::uint8_t> /*bytes*/) { return true; }
 
-// The decoded frames against the input, GOF by GOF and as a whole.
+// Errors of the decoded frames, GOF by GOF and as a whole.
 struct Measured {
   std::vector<Metrics> gofs;
   Metrics whole;
@@ -114,7 +114,7 @@ TEST_P(EachProfile, ReportsTheMetricsOfTheStream) {
   EXPECT_EQ(encoded.report.bytes, encoded.bytes.size());
 }
 
-// If the grid does not depend on later frames, and there is only one GOF.
+// Holds if the grid does not depend on later frames, and there is only one GOF.
 TEST_P(EachProfile, OneGofIsCodedAsByEncode) {
   MemoryFrames source = bending_tube(8, 20);
   EncoderSettings settings =
@@ -126,7 +126,7 @@ TEST_P(EachProfile, OneGofIsCodedAsByEncode) {
   EXPECT_EQ(encode_frames(source, settings).bytes, encode_to_memory(source, settings));
 }
 
-// So is a span, if it holds the sequence.
+// A span that holds the whole sequence is coded as by encode(), too.
 TEST(FrameEncoder, OneSpanIsCodedAsByEncode) {
   MemoryFrames source = bending_tube(8, 30);
   const EncoderSettings settings = settings_of(Profile::kHigh, {Target::kMaxError, 0.01}, 10);
@@ -166,7 +166,7 @@ TEST(FrameEncoder, GivesTheBytesOfASpanWhenItIsFull) {
   EXPECT_TRUE(encoder->finish());
 }
 
-// Frames of a source, as if their number were not known.
+// Encodes the frames of a source as if their number were not known.
 Encoded encode_open_ended(FrameSource& source, const EncoderSettings& settings) {
   Encoded out;
   FrameFormat format = format_of(source);
@@ -191,7 +191,7 @@ Encoded encode_open_ended(FrameSource& source, const EncoderSettings& settings) 
   return out;
 }
 
-// GOFs of any kind; the last is shorter.
+// GOFs may be of any kind; the last is shorter.
 TEST(FrameEncoder, WithoutANumberOfFrames) {
   MemoryFrames source = bending_tube(80, 50);
   for (const KindChoice kinds : {KindChoice::kAuto, KindChoice::kCluster, KindChoice::kInter}) {
@@ -224,7 +224,7 @@ TEST(FrameEncoder, WithLowDelayAFrameIsOutWhenItIsIn) {
   }
 }
 
-// GOFs of equal length where their number is known; one where they may be of any length.
+// GOFs have equal length if the number of frames is known; otherwise there is one.
 TEST(FrameEncoder, WithLowDelayAndANumberOfFrames) {
   MemoryFrames source = bending_tube(80, 50);
   for (const std::uint32_t gof_frames : {20U, EncoderSettings::kWholeSequence}) {
@@ -273,7 +273,7 @@ TEST(FrameEncoder, WithoutAFrameThereIsNoStream) {
   }
 }
 
-// It is left out, and the others are a stream.
+// A wrong frame is left out; the others make a stream.
 TEST(FrameEncoder, WithLowDelayAWrongFrameIsNoEnd) {
   MemoryFrames source = bending_tube(8, 4);
   FrameFormat format = format_of(source);
@@ -443,7 +443,7 @@ TEST(FrameEncoder, ASinkThatFailsEndsIt) {
   }
 }
 
-// Still frames, which give no hint of the noise that follows.
+// The first frames are still, and give no hint of the noise that follows.
 TEST(FrameEncoder, ALaterGofThatNeedsAHigherLevelIsAnError) {
   constexpr std::uint32_t kVertices = 520;  // more components than level 1 has
   constexpr std::uint32_t kGofFrames = 176;

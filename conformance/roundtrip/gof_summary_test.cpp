@@ -1,4 +1,4 @@
-// What rlpcinfo lists of GOFs, from streams with layer groups, an absent slice, and clusters.
+// Tests the GOF list of rlpcinfo for streams with layer groups, an absent slice, and clusters.
 #include "decoder/codec/units/gof_summary.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Streams of the High profile whose GOFs share shared rigs, from the encoder to the decoder.
+// Tests streams of the High profile whose GOFs use shared rigs, from encoder to decoder.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ Encoded encoded(Profile profile, Target target, std::uint32_t gof_frames,
   settings.preset = preset;
   settings.target = target;
   settings.gof_frames = gof_frames;
-  settings.hash_mode = HashMode::kFrame;  // of the encoder's reconstruction
+  settings.hash_mode = HashMode::kFrame;  // hashes of the encoder's reconstruction
   Encoded result;
   result.bytes = encode_to_memory(source, settings, &result.report);
   EXPECT_FALSE(result.bytes.empty());

@@ -1,5 +1,5 @@
-// Inter GOFs (6.14, 8.19): writer and parser against each other, the encoder against the
-// reconstruction of the decoder, and frames in any order and on any number of threads.
+// Tests inter GOFs (6.14, 8.19): writer against parser, the encoder against the reconstruction
+// of the decoder, and frames in any order and on any number of threads.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -57,7 +57,7 @@ class InterGofs : public testing::Test {
     return parser.finish();
   }
 
-  // All frames, one after the other.
+  // Returns all frames, one after the other.
   std::vector<std::int32_t> decoded(const InterGof& gof, std::uint32_t threads = 1) {
     const Threads use(threads);
     const OrderedRecon recon(mesh(), gof, header_.position_bits);
@@ -158,7 +158,7 @@ TEST_F(InterGofs, RefuseMoreMemoryThanAllowed) {
   EXPECT_EQ(ok.error().code, Errc::kLimitExceeded);
 }
 
-// What the encoder sees as decoded is what a decoder decodes.
+// Tests that the frames the encoder expects are those that a decoder decodes.
 class CodedFrames : public InterGofs, public testing::WithParamInterface<unsigned> {
  protected:
   // A tube that bends and waves.

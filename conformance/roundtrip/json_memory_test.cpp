@@ -1,5 +1,5 @@
-// The memory that a JSON text takes as a tree, and when it is printed, stays below what is
-// compared with the limit.
+// Tests that the memory of a JSON text as a tree, and while it is printed, stays below the
+// estimate that is compared with the limit.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 namespace rlpc {
 namespace {
 
-// Reads and prints a text; returns the peak of what is allocated, the text not included.
+// Reads and prints a text; returns the peak of allocated memory without the text.
 template <class Json>
 std::size_t peak_of(const std::string& text) {
   const std::size_t before = memory_count.now;
@@ -69,7 +69,7 @@ TEST(JsonMemory, IsBoundedForOneKindOfValueWithoutEnd) {
   }
 }
 
-// 3 kB of stream.
+// The stream has 3 kB.
 TEST(JsonMemory, OfAnAssetIsKnownBeforeItIsRead) {
   std::string text = R"({"asset":{"version":"2.0"},"materials":[)";
   for (int i = 0; i < 300000; ++i) text += "[],";

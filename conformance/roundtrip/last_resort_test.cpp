@@ -1,4 +1,4 @@
-// Targets that skinned GOFs miss: in the Main profile, cluster GOFs reach them.
+// Tests that cluster GOFs reach targets that skinned GOFs miss, in the Main profile.
 #include <gtest/gtest.h>
 
 #include <cstdint>

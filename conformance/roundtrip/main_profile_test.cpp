@@ -31,7 +31,7 @@ EncoderSettings settings_for(Target target, Preset preset = Preset::kFast) {
   EncoderSettings settings;
   settings.target = target;
   settings.preset = preset;
-  settings.hash_mode = HashMode::kFrame;  // of the encoder's reconstruction; verified below
+  settings.hash_mode = HashMode::kFrame;  // hashes of the encoder, verified below
   return settings;
 }
 
@@ -60,7 +60,7 @@ Metrics decoded_metrics(MemoryFrames& source, const StreamBytes& bytes) {
   return metrics.result();
 }
 
-// The tube of bending_tube, as it is in frame 0, moved as a whole.
+// Moves frame 0 of bending_tube as a whole.
 MemoryFrames moved_tube(std::uint32_t num_frames, bool moves) {
   MemoryFrames tube = bending_tube(12, 1);
   std::vector<float> first(3 * std::size_t{tube.num_vertices()});

@@ -37,8 +37,8 @@ struct Memory {
   std::uint64_t peak = 0;
 };
 
-// Decodes all frames under the limit of memory.estimate; the error, and the peak of what is
-// allocated.
+// Decodes all frames under the limit of memory.estimate. Returns the error, and sets the peak
+// of allocated memory.
 std::optional<Error> decode(const StreamBytes& stream, Memory& memory,
                             std::uint32_t coarse_layers = SliceCut::kAll) {
   auto source = memory_source(StreamBytes(stream));
@@ -59,8 +59,8 @@ std::optional<Error> decode(const StreamBytes& stream, Memory& memory,
   return result ? std::nullopt : std::optional(result.error());
 }
 
-// The least limit with which a stream is decoded: each error names what is needed so far. Also
-// with lower limits, no more is allocated than they allow, apart from the decoder itself.
+// Returns the least limit with which a stream is decoded: each error names the memory needed so
+// far. Lower limits must hold too: no more is allocated, apart from the decoder itself.
 Memory memory_for(const StreamBytes& stream, std::uint32_t coarse_layers = SliceCut::kAll) {
   constexpr std::uint64_t kOfDecoder = 4096;
   Memory memory;
@@ -116,7 +116,7 @@ TEST(MemoryLimit, HoldsForSkinnedGofs) {
 TEST(MemoryLimit, HoldsForFrames) {
   const std::uint32_t vertices = 3 * kAround;
   const Size sizes[] = {{kVertices, 2, 1, 0, 0, 0},    // filters
-                        {kVertices, 3, 8, 0, 0, 0},    // of many temporal layers
+                        {kVertices, 3, 8, 0, 0, 0},    // filters of many temporal layers
                         {vertices, 100, 1, 0, 0, 0},   // residuals
                         {vertices, 70, 2, 0, 0, 60}};  // frames that can be repeated
   for (const Size& size : sizes) {
@@ -127,7 +127,7 @@ TEST(MemoryLimit, HoldsForFrames) {
 
 constexpr Size kOfRig{3 * kAround, 1, 10, 50, 10};
 
-// Also where each is used, and then replaced by another.
+// The limit also holds if each rig is used, and then replaced by another.
 TEST(MemoryLimit, HoldsForSharedRigs) {
   for (const std::uint32_t num_rigs : {1U, 8U}) {
     SCOPED_TRACE(num_rigs);
@@ -136,7 +136,7 @@ TEST(MemoryLimit, HoldsForSharedRigs) {
   }
 }
 
-// Rigs that have been replaced are not kept, nor are their reconstructions: one at a time.
+// Replaced rigs and their reconstructions are not kept: one is in memory at a time.
 TEST(MemoryLimit, ReplacedRigsTakeNone) {
   Plan plan{1, Kind::kSharedRig, {3 * kAround, 1, 64, 10, 2}, tube(3 * kAround), 8, 1};
   Memory once{1U << 30, 0};
@@ -206,7 +206,7 @@ std::vector<Triangle> wheels(std::uint32_t num_vertices) {
   return triangles;
 }
 
-// Meshes with these numbers of vertices. Of some, lists that grow would have just doubled: the
+// Meshes with these numbers of vertices. In some, growing lists would have just doubled: the
 // nodes of 11,000 triangles apart, the 6 * 1,366 edges of tetrahedra.
 struct Mesh {
   std::uint32_t num_vertices = 0;

@@ -1,4 +1,4 @@
-// The encoder reads back what the decoder writes.
+// Tests that the encoder reads back the files that the decoder writes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 constexpr std::int32_t kMin = std::numeric_limits<std::int32_t>::min();
 constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max();
 
-// Small numbers and all sizes of large ones, the same on every run.
+// Returns small numbers and large ones of all sizes, the same on every run.
 std::vector<std::int32_t> test_positions(std::size_t count) {
   std::vector<std::int32_t> positions{0, 1, -1, kMin, kMax, 16777217, -16777219};
   std::uint64_t state = 1;
@@ -89,7 +89,7 @@ TEST_F(MeshFiles, EveryFormatGivesBackTheSameFloats) {
   }
 }
 
-// glTF stores differences from the first frame: of a few vertices, of all, or of none.
+// glTF stores differences from the first frame for a few vertices, for all, or for none.
 TEST_F(MeshFiles, SmallMovesGiveBackTheSameFloats) {
   options_.grid = {-10, {0, 5, 9}};
   std::vector<std::int32_t> all;

@@ -1,5 +1,5 @@
-// The encoder's own choice of bones is not worse than the number of parts that a mesh has,
-// where these are so few and so small that expected costs tell little.
+// Tests that the encoder's choice of bones is not worse than the number of parts of a mesh, if
+// parts are so few and small that expected costs are imprecise.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -73,7 +73,7 @@ class MovingBoxes {
     return static_cast<std::uint32_t>(random_() % count);
   }
 
-  // At a time of its motion; 0: at rest.
+  // Adds a box at a time of its motion; 0: at rest.
   void add_box(std::uint32_t b, std::uint32_t time, std::vector<float>& xyz) const {
     const double turn = speeds_[b] * time;
     const double lift = shifts_[b] * std::sin(0.126 * time);

@@ -1,4 +1,4 @@
-// Clusters by every method of partition, of any mesh: streams that conform and reach their
+// Tests clusters by every method of partition, of any mesh: streams conform and reach their
 // target.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Preset slow is never larger than preset medium, nor one GOF with it than two.
+// Tests that preset slow never makes larger streams than medium, nor one GOF with it than two.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -71,7 +71,7 @@ TEST_P(PresetSlow, KeepsTheSmallestOfItsSearches) {
   }
 }
 
-// The searches have threads of their own, of which none must be left to the caller.
+// The searches have their own threads; none must remain when they return.
 TEST_P(PresetSlow, LeavesNoThreadsBehind) {
   for (const std::uint32_t modes : {2U, 6U, 7U, 8U}) {
     EncoderSettings settings;

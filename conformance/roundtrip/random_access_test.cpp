@@ -1,5 +1,5 @@
-// Frames in any order, with GOFs that are kept and prefetched: the same frames, and no GOF
-// decoded again without need.
+// Tests frames in any order with GOFs that are kept and prefetched: frames are the same, and no
+// GOF is decoded again without need.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -290,7 +290,7 @@ TEST_P(RandomAccess, PrefetchingAtTheEndLeavesItThere) {
 }
 
 TEST_P(RandomAccess, KeptGofsGiveWayToTheLimit) {
-  // The least that decoding without kept GOFs takes.
+  // The least memory that decoding without kept GOFs takes.
   DecoderOptions options;
   const auto is_enough = [&] {
     auto decoder = Decoder::open(memory_source(StreamBytes(stream_)), options);

@@ -1,4 +1,4 @@
-// Writer and parser of residuals against each other (clause 9.5).
+// Tests writer and parser of residuals against each other (clause 9.5).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ void expect_round_trip(const Coded& list) {
   EXPECT_TRUE(rd.at_exact_end());
 }
 
-// Every expected magnitude below 100, and those around all powers of two up to 2^30.
+// Returns every expected magnitude below 100, and those around all powers of two up to 2^30.
 std::vector<std::uint32_t> expected_magnitudes() {
   std::vector<std::uint32_t> list;
   for (std::uint32_t e = 0; e < 100; ++e) list.push_back(e);
@@ -44,7 +44,8 @@ std::vector<std::uint32_t> expected_magnitudes() {
   return list;
 }
 
-// Magnitudes around all powers of two, where the length of the escape changes, and the largest.
+// Returns magnitudes around all powers of two, where the escape length changes, and the
+// largest.
 std::vector<std::int32_t> extreme_values() {
   std::vector<std::int32_t> list{0};
   const auto add = [&](std::int64_t magnitude) {
@@ -82,7 +83,7 @@ TEST(Residual, RandomValuesComeBack) {
     Coded list;
     for (int i = 0; i < 2000; ++i) {
       const auto expected = static_cast<std::uint32_t>((random() >> 2) >> (random() % 31));
-      // Mostly of the expected magnitude, sometimes of any magnitude.
+      // Residuals mostly have the expected magnitude, sometimes any.
       const std::uint64_t around = random() % (expected / 8 + 2);
       const std::uint64_t any = random() >> (4 + random() % 28);
       const auto value = static_cast<std::int32_t>(

@@ -1,4 +1,4 @@
-// Decoding of streams with shared rigs: random access, what is kept in memory, and failures.
+// Tests decoding of streams with shared rigs: random access, memory, and failures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ std::vector<UnitPlace> units_of_type(const StreamBytes& stream, UnitType type) {
   return units;
 }
 
-// A frame by seeking; its rule if that fails.
+// Decodes a frame by seeking. Returns the broken rule if that fails.
 std::string seek_to(Decoder& decoder, std::uint32_t f, Frame& frame) {
   frame.resize(3 * std::size_t{decoder.header().num_vertices});
   if (const auto found = decoder.seek(f); !found) return found.error().rule;
@@ -41,7 +41,7 @@ std::string seek_to(Decoder& decoder, std::uint32_t f, Frame& frame) {
   return more ? "" : more.error().rule;
 }
 
-// Backwards, over rigs that are replaced; and each frame first of all.
+// Seeks backwards, over rigs that are replaced; and to each frame first of all.
 TEST(RigSeeking, FindsEveryFrame) {
   const std::vector<Frame> expected = decode_all(rig_stream());
   ASSERT_EQ(expected.size(), 16U);
@@ -131,7 +131,7 @@ TEST(RigSeeking, ReportsAnIndexWithAnotherRig) {
   EXPECT_EQ(rule_at(list, 0), "R-IDX-05");
 }
 
-// GOFs that have lost their rig, up to its successor: each is unsupported by itself.
+// Each GOF that has lost its rig, up to the next one, is unsupported by itself.
 TEST(RigSeeking, GoesOnAfterALostRig) {
   const StreamBytes good = rig_stream();
   const std::vector<Frame> expected = decode_all(good);
@@ -157,7 +157,7 @@ TEST(RigSeeking, GoesOnAfterALostRig) {
   }
 }
 
-// The rigs of a stream as a decoder holds them.
+// Tests the rigs that a decoder holds.
 TEST(StreamRigs, KeepsThoseAliveAtTheGof) {
   for (const StreamBytes& stream : {rig_stream(), indexed_rig_stream()}) {
     StreamReader reader(memory_source(stream), {});
@@ -185,7 +185,7 @@ TEST(StreamRigs, KeepsThoseAliveAtTheGof) {
     EXPECT_TRUE(seen[0].expired());
     EXPECT_FALSE(seen[1].expired());
     EXPECT_FALSE(seen[2].expired());
-    // Backwards, those that come later go.
+    // Going backwards drops later rigs.
     ASSERT_TRUE(reader.rigs().at(gofs[0].offset));
     EXPECT_TRUE(seen[1].expired());
     EXPECT_TRUE(seen[2].expired());
@@ -243,13 +243,13 @@ TEST(RigMemory, DoesNotGrowWithTheNumberOfRigs) {
   for (const bool backwards : {false, true}) {
     const std::size_t few = peak_of_decoding(RigAnimation().many_rigs(10), backwards);
     const std::size_t many = peak_of_decoding(RigAnimation().many_rigs(60), backwards);
-    // Of each GOF and of each rig, a few numbers are kept.
+    // A few numbers of each GOF and each rig are kept.
     EXPECT_LT(many, few + 50 * 500) << backwards;
     EXPECT_GT(few, 50000U);
   }
 }
 
-// Each allocation fails in turn, then samples; what could be decoded before is right.
+// Each allocation fails in turn, then samples of them; frames decoded before are right.
 TEST(RigMemory, FailedAllocationsEndDecoding) {
   const StreamBytes stream = indexed_rig_stream();
   const std::vector<Frame> expected = decode_all(stream);

@@ -1,4 +1,4 @@
-// Damaged streams: an error, and right frames before it; never a crash or a hang.
+// Tests damaged streams: they give an error, after right frames; never a crash or a hang.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ DecoderOptions small_options(bool verify_hashes = true) {
   return options;
 }
 
-// In an exact-size copy, so that the address sanitizer sees one byte over.
+// Decodes an exact-size copy, so that the address sanitizer sees one byte over.
 Result<Decoder> open_copy(const StreamBytes& bytes, const DecoderOptions& options) {
   return Decoder::open(memory_source(StreamBytes(bytes)), options);
 }
@@ -60,7 +60,7 @@ Decoded decode(const StreamBytes& bytes, const DecoderOptions& options = small_o
   return out;
 }
 
-// One frame by seeking; nothing if there was an error.
+// Decodes one frame by seeking; none if there was an error.
 std::optional<Frame> decode_frame(const StreamBytes& bytes, std::uint32_t index) {
   auto decoder = open_copy(bytes, small_options());
   if (!decoder || index >= decoder->header().num_frames) return std::nullopt;
@@ -99,7 +99,7 @@ class Robustness : public testing::TestWithParam<StreamBytes (*)()> {
       }
     }
   }
-  // The CRCs match, so anything may be decoded; with hashes, only what was hashed.
+  // The CRCs match, so anything may be decoded; with hashes, only the hashed positions.
   void expect_an_end(StreamBytes bytes) const {
     repair_crcs(bytes);
     const auto start = std::chrono::steady_clock::now();
@@ -115,7 +115,7 @@ class Robustness : public testing::TestWithParam<StreamBytes (*)()> {
   std::set<std::size_t> slices_;  // offsets
 };
 
-// But a GOF is complete without the slices, and the hash, that are missing after it.
+// A GOF is complete, however, without the slices and the hash after it.
 TEST_P(Robustness, EveryProperPrefixFails) {
   for (std::size_t n = 0; n < stream_.size(); ++n) {
     if (slices_.contains(n)) continue;
@@ -123,7 +123,7 @@ TEST_P(Robustness, EveryProperPrefixFails) {
     SCOPED_TRACE(testing::Message() << n << " bytes");
     Decoded got;
     ASSERT_NO_FATAL_FAILURE(expect_error(prefix, got));
-    // Nothing after the version: unsupported from version 1.2 on.
+    // A stream that ends after the version is unsupported from version 1.2 on.
     if (n != kStreamHeaderBytes || stream_[9] < 2) {
       ASSERT_EQ(got.error->code, Errc::kTruncated) << got.error->rule;
     }
@@ -131,7 +131,7 @@ TEST_P(Robustness, EveryProperPrefixFails) {
   }
 }
 
-// But a GOF is complete before a slice of it whose type has become another, and its hash, too.
+// A GOF is complete, however, before a slice or hash whose type has been changed.
 TEST_P(Robustness, EveryFlippedBitIsNoticed) {
   for (std::size_t bit = 0; bit < 8 * stream_.size(); ++bit) {
     if (slices_.contains(bit / 8)) continue;

@@ -1,4 +1,4 @@
-// Writer and parser of shared rigs, and of GOFs that use them, against each other (6.13);
+// Tests writer and parser of shared rigs, and of GOFs that use them, against each other (6.13);
 // and their reconstruction against that of one GOF with the same contents (8.16).
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ namespace {
 constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
 using Payload = std::vector<std::uint8_t>;
 
-// A decoder's side of a rig or of a GOF that uses it.
+// Parses a rig or a GOF that uses it, as a decoder does.
 class Reading {
  public:
   explicit Reading(const SplitSkinnedGof& from, const RigSlots& rigs = {})
@@ -48,7 +48,7 @@ class Reading {
     BitReader r(payload);
     return error_of(parser_.slice(r, 0));
   }
-  // A unit and its slices, up to the first error.
+  // Parses a unit and its slices, up to the first error.
   std::optional<Error> all(const SkinnedGofPayloads& payloads, bool is_rig) {
     auto error = is_rig ? rig(payloads.first) : tracks(payloads.first);
     for (std::size_t i = 0; i < payloads.slices.size() && !error; ++i) {
@@ -219,7 +219,7 @@ TEST(SharedRigRecon, GivesTheFramesOfOneGof) {
         from.whole.gof.weights.num_adaptive_factors > 0 && from.tracks.group_end.size() > 1 ? 1
                                                                                             : 0;
   }
-  EXPECT_GT(adaptive, 20);  // whose weights go on from those of the rig
+  EXPECT_GT(adaptive, 20);  // their weights continue those of the rig
 }
 
 // The rig is only read: its GOFs do not depend on each other or on their order.

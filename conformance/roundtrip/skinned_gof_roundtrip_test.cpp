@@ -1,4 +1,4 @@
-// Writer and parser of skinned GOFs against each other (clauses 6.11 and 6.12).
+// Tests writer and parser of skinned GOFs against each other (clauses 6.11 and 6.12).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ SkinnedGofPayloads payloads_of(const RandomSkinnedGof& from) {
   return write_skinned_gof(from.gof, mesh, from.header);
 }
 
-// A decoder's side of one stream.
+// Parses one stream, as a decoder does.
 class Reading {
  public:
   explicit Reading(const RandomSkinnedGof& from, std::uint64_t max_memory = kMemory)
@@ -48,7 +48,7 @@ class Reading {
     BitReader r(payload);
     return error_of(parser_.slice(r, 0));
   }
-  // A GOF and its slices, up to the first error.
+  // Parses a GOF and its slices, up to the first error.
   std::optional<Error> all(const Payload& gof_payload, const std::vector<Payload>& slices) {
     if (auto error = gof(gof_payload)) return error;
     for (const Payload& payload : slices) {
@@ -74,7 +74,7 @@ std::string text_of(const std::optional<Error>& error) {
   return error ? std::string(error->rule) + " " + error->element : "no error";
 }
 
-// The parts first: they say where a difference is.
+// Compares the parts first: they show where a difference is.
 void expect_equal(const SkinnedGof& a, const SkinnedGof& b) {
   ASSERT_EQ(a.bones.size(), b.bones.size());
   for (std::size_t i = 0; i < a.bones.size(); ++i) EXPECT_TRUE(a.bones[i] == b.bones[i]) << i;
@@ -100,7 +100,7 @@ void expect_round_trip(const RandomSkinnedGof& from) {
   expect_equal(from.gof, parsed);
 }
 
-// Runs the reconstruction of what was parsed; positions are within their range.
+// Reconstructs the parsed GOF and checks that positions are within their range.
 void expect_frames_in_range(Reading& reading, int position_bits) {
   const SkinnedGof gof = reading.finish();
   const OrderedMesh& mesh = reading.mesh_of(gof);
@@ -143,7 +143,7 @@ TEST(SkinnedGofRoundTrip, LargerGofsComeBack) {
   }
 }
 
-// The largest and smallest residuals in a row drive every running mean to its ends.
+// Alternating largest and smallest residuals drive every running mean to its limits.
 TEST(SkinnedGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
   for (const int period : {1, 2, 7, 50}) {
     for (unsigned seed = 1; seed <= 40; ++seed) {
@@ -179,7 +179,7 @@ TEST(SkinnedGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
   }
 }
 
-// The first n bytes, in an exact-size copy, so that a sanitizer sees one byte over.
+// Returns the first n bytes in an exact-size copy, so that a sanitizer sees one byte over.
 Payload prefix_of(const Payload& payload, std::size_t n) {
   return {payload.begin(), payload.begin() + static_cast<std::ptrdiff_t>(n)};
 }
@@ -295,7 +295,7 @@ TEST(SkinnedGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
   EXPECT_GT(illegal, 200);
 }
 
-// The residuals of a track that belong to the first `layers` temporal layers besides the first.
+// Returns the residuals of a track in the first temporal layer and in `layers` further ones.
 TrackResiduals with_layers(const SkinnedGof& gof, const TrackResiduals& residuals, int between,
                            std::uint32_t layers) {
   TrackResiduals left(residuals.size());

@@ -1,4 +1,4 @@
-// Sequences of several spans, of which later ones use shared rigs of earlier ones.
+// Tests sequences of several spans in which later ones use shared rigs of earlier ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ std::array<double, 3> bent(double x, double y, double z, double f) {
           std::sin(bend) * x + std::cos(bend) * y * swell, z * swell};
 }
 
-// From some frame on, another deformation is added.
+// Adds another deformation from some frame on.
 Move changing(double from) {
   return [from](double x, double y, double z, double f) {
     auto p = bent(x, y, z, f);
@@ -89,7 +89,7 @@ std::size_t count(const StreamBytes& bytes, UnitType type) {
 
 using Frames = std::vector<std::vector<std::int32_t>>;
 
-// Each frame has a hash, which the decoder compares.
+// Decodes all frames and compares the hash of each.
 Frames decode(const StreamBytes& bytes) {
   auto decoder = Decoder::open(memory_source(bytes));
   if (!decoder) throw std::logic_error("the stream does not open");
@@ -110,13 +110,13 @@ TEST(SpanRigs, RepeatedMotionHasOneRig) {
   const StreamBytes whole = stream_of(source, settings_of(32), 64);
   EXPECT_EQ(count(whole, UnitType::kRig), 1U);
   EXPECT_EQ(count(whole, UnitType::kGof), 6U);
-  // Much less than a rig for each span.
+  // This is much less than a rig for each span takes.
   EXPECT_LT(whole.size(),
             2.2 * static_cast<double>(stream_of(first, settings_of(32), 64).size()));
   EXPECT_EQ(decode(whole).size(), 192U);
 }
 
-// A span of a single GOF has vertices of its own where nothing follows, but a rig otherwise.
+// A span of a single GOF has its own vertices if nothing follows, otherwise a shared rig.
 TEST(SpanRigs, SpansMayBeSingleGofs) {
   MemoryFrames source = moving_tube(96, bent);
   const StreamBytes bytes = stream_of(source, settings_of(32), 32);
@@ -125,7 +125,7 @@ TEST(SpanRigs, SpansMayBeSingleGofs) {
   EXPECT_EQ(decode(bytes).size(), 96U);
 }
 
-// Little more than if the parts were sequences of their own.
+// Takes little more than separate sequences of the parts.
 TEST(SpanRigs, ChangedMotionIsCodedAsWell) {
   MemoryFrames source = moving_tube(128, changing(64.0));
   MemoryFrames first = moving_tube(64, bent);
@@ -171,7 +171,7 @@ TEST(SpanRigs, MeetOtherTargets) {
   }
 }
 
-// encode() with as little memory as it accepts.
+// Encodes with as little memory as encode() accepts.
 class LittleMemory : public testing::Test {
  protected:
   static EncoderSettings settings(std::uint32_t threads) {

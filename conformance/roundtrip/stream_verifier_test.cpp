@@ -1,4 +1,4 @@
-// The encoder's verification of its own streams notices what is wrong with them.
+// Tests that the encoder's verification of its own streams finds faults.
 #include "encoder/codec/sequence/stream_verifier.h"
 
 #include <gtest/gtest.h>
@@ -38,14 +38,14 @@ Written write_lossless(FrameSource& source, bool keep_order) {
 
 std::shared_ptr<StreamBuffer> buffer_of(const StreamBytes& bytes) {
   auto buffer = std::make_shared<StreamBuffer>(StreamBuffer::Keep::kAll);
-  // In pieces, as it is written.
+  // Passes the stream in pieces, as it is written.
   for (std::size_t at = 0; at < bytes.size(); at += 7) {
     buffer->add(std::span(bytes).subspan(at, std::min<std::size_t>(7, bytes.size() - at)));
   }
   return buffer;
 }
 
-// The error, or "" if there is none.
+// Returns the error, or "" if there is none.
 std::string verify(const Written& written, FrameSource& source) {
   StreamVerifier verifier(written.settings, written.report.header, written.report.input_vertex,
                           buffer_of(written.bytes), 2);
@@ -55,7 +55,7 @@ std::string verify(const Written& written, FrameSource& source) {
   return error ? error->message : "";
 }
 
-// A tube of which one coordinate of one frame is another.
+// Returns a tube with a changed coordinate in one frame.
 MemoryFrames changed_tube(std::uint32_t frame, std::size_t coordinate, float by) {
   MemoryFrames tube = bending_tube(6, 7);
   std::vector<std::vector<float>> frames(tube.num_frames());
@@ -149,7 +149,7 @@ TEST(StreamVerifier, NoticesPositionsThatDecodersDoNotFind) {
   EXPECT_NE(error->message.find("decoded to other positions"), std::string::npos);
 }
 
-// The offset of the payload of the first unit of a type.
+// Returns the offset of the payload of the first unit of a type.
 std::size_t payload_of(const StreamBytes& bytes, UnitType type) {
   std::size_t at = kStreamHeaderBytes;
   while (at + kUnitHeaderBytes < bytes.size() && bytes[at] != static_cast<std::uint8_t>(type)) {

@@ -1,4 +1,5 @@
-// Memory while frames stream in and out: enough for one GOF, however long the sequence.
+// Tests that memory while frames stream in and out suffices for one GOF, however long the
+// sequence.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -74,7 +75,7 @@ std::size_t peak_of_decoding(const std::vector<std::uint8_t>& stream,
 }
 
 TEST(Streaming, MemoryDoesNotGrowWithTheSequence) {
-  // Each GOF needs an entry in the index; a growing table reserves room for as many again.
+  // Each GOF needs an entry in the index; a growing table reserves twice the room.
   constexpr std::size_t kOfGof = 64;
   std::vector<std::uint8_t> short_stream;
   std::vector<std::uint8_t> long_stream;

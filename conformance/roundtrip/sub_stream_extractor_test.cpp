@@ -1,5 +1,5 @@
-// Cut streams: as the extractor writes them, and as a decoder with the same cut decodes the
-// original.
+// Tests that a stream cut by the extractor decodes like the original in a decoder with the same
+// cut.
 #include "decoder/codec/extract/sub_stream_extractor.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ std::vector<SliceCut> some_cuts() {
   return cuts;
 }
 
-// Group and layer group of each slice, for each GOF.
+// Component group and layer group of each slice, for each GOF.
 using Places = std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>>;
 Places places_of(const StreamBytes& stream) {
   const auto cutter = SubStreamExtractor::open(memory_source(stream), {});
@@ -131,8 +131,8 @@ TEST(SubStreamExtractor, CopiesTheOtherUnits) {
   for (const StreamBytes& unit : units(out)) {
     if (std::find(before.begin(), before.end(), unit) == before.end()) ++changed;
   }
-  // The hash of the GOF that was cut, the index, the end of the sequence if the index is
-  // shorter.
+  // These change: the hash of the GOF that was cut, the index, and the end of the sequence if
+  // the index is shorter.
   EXPECT_GE(changed, 2U);
   EXPECT_LE(changed, 3U);
 }
@@ -208,7 +208,7 @@ TEST(CutDecoding, ReportsWhetherAnythingWasDropped) {
   EXPECT_FALSE(was_cut(rich_stream(), {0, 1}));
 }
 
-// The first error of decoding the stream with the cut; "" if there is none.
+// Returns the first broken rule when decoding the stream with the cut; "" if none.
 std::string rule_of(const StreamBytes& stream, const SliceCut& cut) {
   auto decoder = Decoder::open(memory_source(stream), cut_options(cut));
   EXPECT_TRUE(decoder);
@@ -242,7 +242,7 @@ TEST(CutDecoding, ComparesHashesOfGofsThatAreWhole) {
 TEST(CutDecoding, ParsesNothingOfWhatIsLeftOut) {
   const StreamBytes stream = sliced_stream();
   const auto slices = units_of_type(stream, UnitType::kSlice);
-  // Slices of the first GOF: those of the finer layers, and those of the second group.
+  // Slices of the first GOF, of the finer layers and of the second group.
   for (const std::size_t s : {std::size_t{1}, std::size_t{3}, std::size_t{4}, std::size_t{5}}) {
     const StreamBytes garbled =
         with_payload(stream, slices[s],

@@ -1,4 +1,4 @@
-// Cuts of streams with arbitrary units in arbitrary order: each cut fails or conforms.
+// Tests cuts of streams with arbitrary units in arbitrary order: each cut fails or conforms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr SliceCut kCuts[] = {{}, {0, 1}, {1, 1}, {1, SliceCut::kAll}, {SliceCut::kAll, 1}};
 
-// The rules that a stream breaks: either those that stop a decoder, or the others.
+// Returns the rules that a stream breaks: either those that stop a decoder, or the others.
 std::vector<std::string> broken_rules(const StreamBytes& stream, bool stops_decoder) {
   const auto source = memory_source(stream);
   std::vector<std::string> rules;
@@ -107,7 +107,7 @@ Bytes unit_at(const StreamBytes& stream, const UnitPlace& unit) {
 }
 
 Bytes metadata_unit(std::string_view text) {
-  // One stored block, and its Adler-32.
+  // Append one stored block and its Adler-32.
   const auto size = static_cast<std::uint8_t>(text.size());
   Bytes payload{0, 0, 0, size, 0x78, 0x01, 1, size, 0, static_cast<std::uint8_t>(~size), 0xFF};
   payload.insert(payload.end(), text.begin(), text.end());
@@ -141,7 +141,7 @@ class UnitShuffler {
     };
   }
 
-  // Units, the first and the last of which stay, after some changes.
+  // Returns the units after some changes; the first and the last unit stay.
   StreamBytes stream(std::mt19937& random) const {
     std::vector<Bytes> units = units_;
     const auto below = [&random](std::size_t n) { return random() % n; };

@@ -1,5 +1,5 @@
-// Streams with temporal layers, from the encoder to the extractor and the decoder: what the
-// encoder reports of a cut is what comes out.
+// Tests streams with temporal layers, from encoder to extractor and decoder: cuts have the size
+// and error that the encoder reports.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -42,7 +42,7 @@ Encoded encoded_by_frames(const EncoderSettings& settings) {
   return encode_frames(source, settings);
 }
 
-// The KG error of a stream in the order of the input.
+// Returns the KG error of a stream in the order of the input.
 double kg_error(const StreamBytes& stream) {
   MemoryFrames source = bending_tube(16, kFrames);
   auto decoder = Decoder::open(memory_source(stream));
@@ -102,7 +102,7 @@ TEST(TemporalLayers, CutsOfGofsThatShareARigAreAsReported) {
   expect_reported_cuts(whole, 2);
 }
 
-// With an index, whose offsets change.
+// The stream has an index, whose offsets change.
 TEST(TemporalLayers, CutsOfManyGofsAreAsReported) {
   const Encoded whole = encoded(settings_with(2, 3));
   EXPECT_EQ(whole.report.num_gofs, 20U);

@@ -337,7 +337,7 @@ class Program:
 
 
 def run(code, given):
-    """What a code object of a program defines, as a dictionary; given: as for compile( )."""
+    """Definitions of a code object of a program, as a dictionary; given: as for compile( )."""
     namespace = {"__builtins__": dict(_PYTHON_FUNCTIONS)}
     namespace.update(given)
     exec(code, namespace)  # noqa: S102

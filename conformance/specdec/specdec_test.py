@@ -317,7 +317,7 @@ class Commands(FolderTest):
                 self.assertEqual(cached.read_bytes(), plain.read_bytes())
             self.assertEqual(program.call_count, 1)
             code, output, _ = self.specdec("--cache", cache, "decode", stream, cached, "--trace")
-            self.assertEqual((code, program.call_count), (0, 2))  # which is another program
+            self.assertEqual((code, program.call_count), (0, 2))  # another program
             self.assertIn("profile_idc = ", output)
             self.assertEqual(self.specdec("--cache", cache, "--rlpc-conformance"),
                              self.specdec("--rlpc-conformance"))

@@ -1,4 +1,4 @@
-"""What the tests of the specification as a decoder share."""
+"""Shared by the tests of the specification as a decoder."""
 
 import io
 import pathlib

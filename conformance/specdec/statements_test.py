@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the text of the specification says about its pseudo-code is true.
+"""Tests that statements of the specification about its pseudo-code are true.
 
     statements_test.py [unittest arguments, such as Statements]
 """
@@ -190,7 +190,7 @@ class Statements(unittest.TestCase):
 
 
 class CoarseMeshes(unittest.TestCase):
-    """What 8.9.8 says of them."""
+    """Tests the statements of 8.9.8."""
 
     def decoded(self, data):
         """The variables of a decoder that has decoded a stream, the (name, value) of its syntax

@@ -46,7 +46,7 @@ class Clips(FolderTest):
 
 
 class StreamTest(Clips):
-    """What rlpcenc writes decodes to the same bytes, and reads as the same syntax elements."""
+    """Streams of rlpcenc decode to the same bytes, and read as the same syntax elements."""
 
     def agree(self, data):
         code, _, _, expected = self.rlpcdec(data)

@@ -1,5 +1,5 @@
-// What the tests in C have in common: checks, and streams of small animations. C99; included
-// once by each program.
+// Shared code of the tests in C: checks, and streams of small animations. C99; included once by
+// each program.
 #pragma once
 
 #include <stdint.h>
@@ -32,7 +32,7 @@ static inline int append_encoded(void* user, const void* bytes, size_t num_bytes
 }
 
 // Two triangles for each field of a grid of vertices, row after row: 6 * (rows - 1) * fields
-// indices. A grid that is closed has a field behind its last column.
+// indices. A closed grid has a field behind its last column.
 static inline void make_grid(uint32_t rows, uint32_t columns, int is_closed,
                              uint32_t* indices) {
   const uint32_t fields = is_closed ? columns : columns - 1;

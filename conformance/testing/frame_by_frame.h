@@ -37,7 +37,7 @@ struct Encoded {
   EncodeReport report;
 };
 
-// held: max_held_frames; one GOF by default.
+// Encodes frame by frame. held: max_held_frames; one GOF by default.
 inline Encoded encode_frames(FrameSource& source, const EncoderSettings& settings,
                              std::uint32_t held = 1) {
   Encoded out;

@@ -1,4 +1,4 @@
-// Small streams of the High profile with all syntax of shared rigs, likewise.
+// Small streams of the High profile with all syntax of shared rigs; residuals are noise.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@ class RigAnimation : protected SlicedAnimation {
  public:
   RigAnimation() { header_.profile_idc = kProfileHigh; }
 
-  // Shared rigs with and without vertex layers, one of them not complete, one that is
-  // replaced; GOFs that use all of a rig, add local component groups to it, or use a part;
-  // GOFs of the other kinds; two frames each.
+  // Has shared rigs with and without vertex layers, one that is incomplete and one that is
+  // replaced; GOFs that use all of a rig, add local component groups to it, or use a part of
+  // it; GOFs of the other kinds; two frames each.
   StreamBytes stream(bool with_index) {
     out_ = lead(8);
     add_rig(0, make_rig(Prediction::kLayers, kGroups));
@@ -34,7 +34,7 @@ class RigAnimation : protected SlicedAnimation {
     add_tracks(0, kGroups, 1);
     return finish(with_index);
   }
-  // A rig that no GOF uses before it is replaced; and one with a bone that moves no vertex,
+  // Has a rig that no GOF uses before it is replaced; and one with a bone that moves no vertex,
   // and a trajectory that no GOF has.
   StreamBytes idle_stream() {
     out_ = lead(1);
@@ -49,7 +49,7 @@ class RigAnimation : protected SlicedAnimation {
     add_gof(gof);
     return finish(false);
   }
-  // A rig for each GOF, under indices in turn.
+  // Has a rig for each GOF; rig indices take turns.
   StreamBytes many_rigs(std::uint32_t count) {
     out_ = lead(count);
     for (std::uint32_t g = 0; g < count; ++g) {
@@ -78,7 +78,7 @@ class RigAnimation : protected SlicedAnimation {
     bone.origin_residual.clear();
   }
 
-  // num_groups: of its component groups, those that have slices.
+  // num_groups: number of component groups that have slices.
   SharedRig make_rig(Prediction prediction, std::uint32_t num_groups) {
     SharedRig rig = gof(0, prediction);
     for (Bone& bone : rig.bones) strip(bone);
@@ -96,7 +96,7 @@ class RigAnimation : protected SlicedAnimation {
     }
     return rig;
   }
-  // num_groups: of the component groups of the rig, those that have tracks.
+  // num_groups: number of component groups of the rig that have tracks.
   SkinnedGof make_tracks(std::uint32_t rig_idx, std::uint32_t num_groups,
                          std::uint32_t num_local_groups) {
     const auto& rig = kept_.at(rig_idx).rig;

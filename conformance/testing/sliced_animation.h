@@ -33,21 +33,21 @@ class SlicedAnimation {
     header_.position_bits = 12;
   }
 
-  // Two GOFs: with vertex layers, two layer groups and two component groups; and with
-  // parallelograms, and a slice that is absent.
+  // Has two GOFs: one with vertex layers, two layer groups and two component groups; one with
+  // parallelograms and an absent slice.
   StreamBytes stream() {
     SkinnedGof cut = gof(kGofFrames, Prediction::kParallelogram);
     cut.slice_layers = {1, 1, 0};
     return stream_of({gof(0, Prediction::kLayers), cut});
   }
-  // With a bone that moves no vertex, and a trajectory that is zero.
+  // Has a bone that moves no vertex, and a trajectory that is zero.
   StreamBytes idle_stream() {
     SkinnedGof idle = gof(kGofFrames, Prediction::kNone);
     idle.bones.push_back(bone(3));
     for (Vec3i& residual : idle.trajectories.back().residual) residual = {};
     return stream_of({gof(0, Prediction::kParallelograms), idle});
   }
-  // Cluster GOFs and skinned GOFs in turn.
+  // Has cluster GOFs and skinned GOFs in turn.
   StreamBytes mixed_stream() {
     std::vector<AnyGof> gofs;
     for (std::uint32_t g = 0; g < 7; ++g) {
@@ -195,7 +195,7 @@ class SlicedAnimation {
     return residuals;
   }
 
-  // GOF unit, slices, and the hash of each frame.
+  // Appends the GOF unit, its slices, and the hash of each frame.
   void append_gof(StreamBytes& bytes, const SkinnedGof& gof) const {
     const OrderedMesh mesh(gof.prediction, topology_, layers_);
     const SkinnedGofPayloads payloads = write_skinned_gof(gof, mesh, header_);
@@ -214,7 +214,8 @@ class SlicedAnimation {
     const ClusterRecon recon(header_, topology_, gof);
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(recon), true));
   }
-  // Hashes of the GOF as decoded: without trajectories of groups whose slices are absent.
+  // Returns the hashes of the GOF as decoded, without trajectories of groups with absent
+  // slices.
   std::vector<std::uint32_t> hashes(const OrderedMesh& mesh, SkinnedGof gof) const {
     while (gof.slice_layers[gof.group_end.size() - 1] == 0) {
       gof.group_end.pop_back();

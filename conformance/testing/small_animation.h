@@ -65,7 +65,7 @@ inline MemoryFrames bending_tube(std::uint32_t rings, std::uint32_t num_frames) 
   return {std::move(shape), std::move(frames)};
 }
 
-// The same with normals, which are predicted from the first frame.
+// A bending tube with normals, which are predicted from the first frame.
 inline MemoryFrames tube_with_normals(std::uint32_t rings, std::uint32_t num_frames) {
   MemoryFrames plain = bending_tube(rings, num_frames);
   FrameSource::Shape shape;
@@ -90,7 +90,7 @@ inline MemoryFrames tube_with_normals(std::uint32_t rings, std::uint32_t num_fra
   return {std::move(shape), std::move(frames)};
 }
 
-// Encodes; the test fails if the stream does not conform.
+// Throws, which fails the test, if the stream does not conform.
 inline void require_conforming(const StreamBytes& bytes) {
   const auto source = memory_source(bytes);
   const ValidationReport report = validate(*source);
@@ -102,7 +102,7 @@ inline void require_conforming(const StreamBytes& bytes) {
   if (!report.complete) throw std::logic_error("the validator did not check all of a stream");
 }
 
-// Empty if the encoder reports an error.
+// Returns the stream; empty if the encoder reports an error.
 inline StreamBytes encode_to_memory(FrameSource& source, const EncoderSettings& settings,
                                     EncodeReport* report = nullptr) {
   StreamBytes bytes;
@@ -116,8 +116,8 @@ inline StreamBytes encode_to_memory(FrameSource& source, const EncoderSettings& 
   return bytes;
 }
 
-// All of the syntax of the Baseline profile: 30 vertices, 6 frames, 2 GOFs, clusters with local
-// frames, vertex order, metadata, a hash for each frame.
+// Settings that use all syntax of the Baseline profile: clusters with local frames, vertex
+// order, metadata, a hash for each frame. Streams of 30 vertices and 6 frames have 2 GOFs.
 inline EncoderSettings rich_settings() {
   EncoderSettings settings;
   settings.profile = Profile::kBaseline;
@@ -138,7 +138,7 @@ inline StreamBytes rich_stream() {
   return encode_to_memory(source, rich_settings());
 }
 
-// With an index: 16 GOFs of one frame, one hash for each GOF, world coordinates.
+// A stream with an index: 16 GOFs of one frame, one hash for each GOF, world coordinates.
 inline StreamBytes indexed_stream() {
   MemoryFrames source = bending_tube(2, 16);
   EncoderSettings settings;
@@ -152,7 +152,7 @@ inline StreamBytes indexed_stream() {
 
 struct UnitPlace {
   std::size_t offset = 0;
-  std::size_t size = 0;  // of the payload
+  std::size_t size = 0;  // bytes of the payload
   UnitType type = UnitType::kEndOfSequence;
 
   std::size_t payload() const { return offset + kUnitHeaderBytes; }

@@ -11,7 +11,7 @@
 
 namespace rlpc {
 
-// An empty one if the stream cannot be read, which fails the test.
+// Returns an empty summary if the stream cannot be read, which fails the test.
 inline StreamSummary summary_of(const std::vector<std::uint8_t>& stream) {
   StreamReader reader(memory_source(stream), {});
   EXPECT_TRUE(reader.open());

@@ -35,7 +35,7 @@ struct WavingStrip {
   }
   std::size_t num_values() const { return 3 * std::size_t{num_vertices}; }
 
-  // Begins a stream into `to`, as far as that has capacity.
+  // Begins a stream that is written to `to`; writing fails beyond its capacity.
   rlpc_status create(const rlpc_encode_options& options, std::vector<std::uint8_t>& to,
                      rlpc_encoder** encoder) const {
     rlpc_frame_format format;

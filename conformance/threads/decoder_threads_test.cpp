@@ -1,5 +1,5 @@
-// A decoder with several threads gives the same frames as one with a single thread, and the
-// same error after them.
+// Tests that a decoder with several threads outputs the same frames as one with a single
+// thread, and the same error after them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 struct Outcome {
   std::vector<std::vector<std::int32_t>> frames;
-  std::vector<std::string> metadata;  // as it is known after each frame
+  std::vector<std::string> metadata;  // metadata known after each frame
   bool complete = false;
   Errc code{};
   std::string rule;
@@ -58,7 +58,7 @@ Outcome decode(const StreamBytes& stream, const DecoderOptions& options) {
   }
 }
 
-// GOFs of 7 frames, the last one of 3, without the check by the validator.
+// Returns GOFs of 7 frames, the last one of 3, without a check by the validator.
 template <Profile profile, HashMode hash_mode>
 StreamBytes encoded_stream() {
   MemoryFrames source = bending_tube(20, 45);
@@ -87,7 +87,7 @@ class Threads : public testing::TestWithParam<StreamBytes (*)()> {
     ASSERT_GE(whole_.frames.size(), 14U);
   }
 
-  // With 2, 3 and 9 threads as with one.
+  // Expects the same outcome with 2, 3 and 9 threads as with one.
   static Outcome expect_the_same(const StreamBytes& stream, DecoderOptions options) {
     options.threads = 1;
     Outcome outcome = decode(stream, options);
@@ -203,7 +203,7 @@ TEST(ThreadsOfACut, LeaveAttributesWhole) {
   EncoderSettings settings;
   settings.target = {Target::kKg, 0.5};
   settings.gof_frames = 4;
-  settings.kinds = KindChoice::kSkinned;  // that can be cut
+  settings.kinds = KindChoice::kSkinned;  // can be cut
   settings.attributes.normals = NormalChoice::kExact;
   const StreamBytes stream = encode_to_memory(source, settings);
   auto whole = Decoder::open(memory_source(StreamBytes(stream)), with_threads(1));

@@ -1,4 +1,4 @@
-// encode() on several threads: the same bytes, and the same errors, as on one.
+// Tests that encode() gives the same bytes and errors on several threads as on one.
 #include <gtest/gtest.h>
 
 #include <algorithm>

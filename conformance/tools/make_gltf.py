@@ -106,7 +106,7 @@ def strip(rows, columns):
 
 
 def stem(document):
-    """A tube along y, with a seam; each ring follows the two joints beside it."""
+    """A tube along y, with a seam; each ring follows the joints above and below it."""
     positions, joints, weights = [], [], []
     for ring in range(RINGS + 1):
         y = HEIGHT * ring / RINGS

@@ -1,7 +1,7 @@
 // Animations of our own making, as input for examples and tests.
 //
-// Only additions, multiplications, divisions and square roots, in a fixed order: every machine
-// makes the same files.
+// They need only additions, multiplications, divisions and square roots, in a fixed order:
+// every machine makes the same files.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ struct Motion {
   }
 };
 Motion translation(Vec3 offset);
-// About the unit vector `axis` through `centre`.
+// A rotation about the unit vector `axis` through `centre`.
 Motion rotation(Vec3 centre, Vec3 axis, double turns);
 Motion operator*(const Motion& second, const Motion& first);
 

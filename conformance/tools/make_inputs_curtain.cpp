@@ -29,7 +29,7 @@ class Cloth {
   Cloth() {
     for (std::uint32_t row = 0; row < kSide; ++row) {
       for (std::uint32_t column = 0; column < kSide; ++column) {
-        // Level at first; slightly uneven, so that it does not stay symmetric.
+        // The sheet is level at first, and slightly uneven, so that it does not stay symmetric.
         const double ripple = 0.01 * sin_turns(0.13 * column + 0.07 * row);
         position_.push_back({kSpacing * (column - 0.5 * (kSide - 1)), ripple, kSpacing * row});
       }
@@ -94,7 +94,7 @@ class Cloth {
     springs_.push_back({a, b, rest, stiffness});
   }
 
-  // Acceleration by the wind that blows through each triangle.
+  // Returns the acceleration by the wind that blows through each triangle.
   std::vector<Vec3> wind_force(double time) const {
     std::vector<Vec3> force(position_.size());
     const double gust = 1 + 0.8 * sin_turns(0.55 * time) + 0.5 * sin_turns(1.27 * time + 0.3);

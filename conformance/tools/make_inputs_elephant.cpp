@@ -100,7 +100,7 @@ QuadMesh make_cage() {
         Cell neighbour = cell;
         neighbour[axis] += 2 * side - 1;
         if (filled(neighbour)) continue;
-        // Around the face, anticlockwise seen from outside.
+        // Corners around the face, anticlockwise as seen from outside.
         constexpr std::array<std::array<int, 2>, 4> kAround{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
         Quad quad{};
         for (std::size_t n = 0; n < 4; ++n) {
@@ -121,7 +121,7 @@ QuadMesh make_cage() {
 QuadMesh subdivide(const QuadMesh& mesh) {
   struct Edge {
     std::uint32_t point = 0;
-    Vec3 sum;  // of the face points beside it
+    Vec3 sum;  // sum of the adjacent face points
   };
   QuadMesh result;
   const auto num_vertices = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -174,7 +174,7 @@ struct Bone {
   int parent = -1;
   Vec3 head;  // the joint
   Vec3 tail;
-  double radius = 0.3;  // of its influence
+  double radius = 0.3;  // radius of influence
 };
 
 enum BoneIndex {
@@ -280,7 +280,7 @@ std::vector<Motion> pose(const std::vector<Bone>& bones, double time) {
     turn(kLegs + 3 * leg + 1, side, bend);
     turn(kLegs + 3 * leg + 2, side, -0.5 * swing - 0.3 * bend);
   }
-  // From the root outwards: parents come before their children.
+  // Pose bones from the root outwards: parents come before their children.
   const Vec3 path{1.3 * time, 0.025 * cos_turns(2 * time), 0.03 * sin_turns(time)};
   for (std::size_t b = 0; b < bones.size(); ++b) {
     const Motion parent = bones[b].parent < 0

@@ -11,7 +11,7 @@ namespace {
 struct Part {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
-  std::size_t link = 0;  // which of the links it moves with
+  std::size_t link = 0;  // the link that it moves with
 };
 
 enum Link : std::size_t {
@@ -113,7 +113,7 @@ constexpr Vec3 kHand{0, 2.27, 0};
 constexpr Vec3 kGrip{0, 2.72, 0};  // between the finger tips
 constexpr Vec3 kFanCentre{-0.75, 0.12, 0.6};
 
-// In the rest pose: the arm straight up, the piece at the origin.
+// Makes the parts in the rest pose: the arm straight up, the piece at the origin.
 std::vector<Part> robot_parts() {
   std::vector<Part> parts;
   parts.push_back(cylinder(kBase, {0, 0.1, 0}, 1, 16, 0.5, 0.1));
@@ -132,12 +132,12 @@ std::vector<Part> robot_parts() {
   return parts;
 }
 
-// Angles in turns, from the rest pose; the hand always points down.
+// Angles in turns, relative to the rest pose; the hand always points down.
 struct Joints {
   double yaw = 0;
   double shoulder = 0;
   double elbow = 0;
-  double grip = 0;  // how far each finger has moved inwards
+  double grip = 0;  // distance that each finger has moved inwards
 };
 
 Motion hand_motion(const Joints& j) {
@@ -176,7 +176,7 @@ std::array<Motion, kLinks> link_motions(double frame) {
   motions[kWrist] = hand_motion(j);
   motions[kFingers] = motions[kWrist] * translation({0, 0, j.grip});
   motions[kFingers + 1] = motions[kWrist] * translation({0, 0, -j.grip});
-  // The piece stays in the hand while the fingers are closed, where it is put otherwise.
+  // The piece stays in the hand while the fingers are closed, otherwise where it was put.
   motions[kPiece] =
       hand_motion(joints_at(std::clamp(frame, kPickTime, kPlaceTime))) * translation(kGrip);
   motions[kFan] = rotation(kFanCentre, {0, 1, 0}, frame / 48 + 0.04 * sin_turns(frame / 75));

@@ -24,15 +24,15 @@ struct Size {
   std::uint32_t frames = 0;
 };
 
-// Rings of a circle of vertices; squares along it as wide as long.
+// Makes rings of vertices with square faces between them.
 Size size_for(std::uint32_t num_vertices, std::uint32_t num_frames) {
   const auto around =
       std::max(6U, static_cast<std::uint32_t>(std::sqrt(num_vertices / kLength * 3.0)));
   return {std::max(2U, num_vertices / around), around, num_frames};
 }
 
-// How sharply the tube bends at `t`, 0 (its root) to 1, in turns per unit: waves that run along
-// it.
+// Returns the curvature of the tube at `t`, 0 (its root) to 1, in turns per unit: waves that
+// run along it.
 double bend(double t, double seconds, double phase) {
   return 0.03 * sin_turns(0.31 * seconds - 0.7 * t + phase) +
          0.02 * sin_turns(0.83 * seconds - 1.9 * t + 2 * phase) +

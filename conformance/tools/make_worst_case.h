@@ -26,10 +26,10 @@ enum class Kind : std::uint8_t { kCluster, kSkinned, kSharedRig, kInter };
 struct Size {
   std::uint32_t vertices = 0;
   std::uint32_t frames = 1;
-  std::uint32_t components = 0;  // of the cluster, trajectories, or temporal layers of frames
-  std::uint32_t bones = 0;       // or clusters, or patches of frames
+  std::uint32_t components = 0;  // components of the cluster, trajectories, or temporal layers
+  std::uint32_t bones = 0;       // bones, clusters, or patches of an inter GOF
   std::uint32_t adaptive_factors = 0;
-  std::uint32_t repeats = 0;  // max_earlier_distance of frames
+  std::uint32_t repeats = 0;  // max_earlier_distance of an inter GOF
 
   std::uint64_t values() const { return std::uint64_t{vertices} * frames; }
 };
@@ -39,17 +39,17 @@ struct Most {
   std::uint32_t components = 1U << 24;
 };
 
-// The size with the most products. Vertices times frames come as close to their limit as the
-// mesh allows; of the sizes that do, those with many factors are preferred.
+// Returns the size with the most products. Vertices times frames come as close to their limit
+// as the mesh allows; of such sizes, those with many factors are preferred.
 Size hardest_size(Kind kind, const Level& level, const Most& most);
-// The factors that R-LVL-05 counts.
+// Returns the number of factors that R-LVL-05 limits.
 std::uint64_t num_factors(Kind kind, const Size& size);
-// With one more of something than its limit, and little of everything else; none for an unknown
-// word.
+// Returns a size with one more of `what` than its limit, and little of everything else; none
+// for an unknown word.
 std::optional<Size> size_beyond(std::string_view what, const Level& level, const Size& size);
 
 // A torus with handles. Handles raise the valence, and so the number of neighbours that predict
-// a vertex, to 17 in the mean; without them it is 15. num_vertices: a multiple of kAround.
+// a vertex, to 17 on average; without them it is 15. num_vertices: a multiple of kAround.
 inline constexpr std::uint32_t kAround = 64;
 std::vector<Triangle> make_mesh(std::uint32_t num_vertices, std::uint32_t max_triangles);
 
@@ -71,7 +71,7 @@ class Noise {
   std::mt19937 random_{1};
 };
 
-// num_rounds times: shared rigs, if the kind has them, and a GOF that uses each; or a GOF.
+// A stream with num_rounds rounds: shared rigs and a GOF that uses each, or a single GOF.
 struct Plan {
   std::uint32_t level = 1;
   Kind kind = Kind::kCluster;
@@ -80,13 +80,13 @@ struct Plan {
   std::uint32_t num_rigs = 1;
   std::uint32_t num_rounds = 1;
 };
-// write: receives the stream piece by piece.
+// Writes the stream, piece by piece.
 void write_stream(const Plan& plan, const std::function<void(const Bytes&)>& write);
 
 ClusterGof make_clusters(const Size& size, Noise& noise);
 SkinnedGof make_bones(const Size& size, const OrderedMesh& mesh, Noise& noise);
 SharedRig make_rig(const Size& size, const OrderedMesh& mesh, Noise& noise);
-// Its member `rig` is still null.
+// Makes a GOF whose member `rig` is still null.
 SkinnedGof make_tracks(const Size& size, const SharedRig& rig, Noise& noise);
 InterSettings make_frames(const Size& size, const OrderedMesh& mesh);
 

@@ -1,4 +1,4 @@
-// The GOFs: as many factors, bones and influences as there can be, of the widths that take a
+// Makes GOFs with as many factors, bones and influences as possible, of the widths that take a
 // decoder longest.
 #include <span>
 
@@ -32,8 +32,8 @@ void add_tracks(Bone& bone, std::uint32_t num_frames, Noise& noise) {
   bone.origin_residual = noise.track(num_frames);
 }
 
-// The most influences that can be coded, of bones that are rare around the vertex: 4 extra
-// bones, and 4 of the bones in its ring.
+// Makes the most influences that can be coded, of bones that are rare around the vertex: 4
+// extra bones, and 4 of the bones in its ring.
 class InfluenceMaker {
  public:
   InfluenceMaker(std::vector<Influences>& influences, std::uint32_t num_bones, Noise& noise)
@@ -66,7 +66,7 @@ class InfluenceMaker {
   Noise& noise_;
 };
 
-// num_frames: 0 of a shared rig.
+// num_frames: 0 for a shared rig.
 void fill_rig(SharedRig& rig, const Size& size, const OrderedMesh& mesh, Noise& noise,
               std::uint32_t num_frames) {
   rig.fraction_bits = kMaxFractionBits;
@@ -176,8 +176,8 @@ SkinnedGof make_tracks(const Size& size, const SharedRig& rig, Noise& noise) {
   return gof;
 }
 
-// An explicit pattern of the longest period, whose frames all have two references but the last.
-// All but a few have depth 0, so that filters of all temporal layers learn from them.
+// Makes an explicit pattern of the longest period, whose frames all have two references except
+// the last. All but a few have depth 0, so that filters of all temporal layers learn from them.
 InterSettings make_frames(const Size& size, const OrderedMesh& mesh) {
   InterSettings s;
   s.pattern.kind = FramePattern::kExplicit;

@@ -7,7 +7,7 @@ namespace rlpc::worst_case {
 namespace {
 
 std::uint64_t factors_without_components(Kind kind, const Size& size) {
-  if (kind == Kind::kCluster) return 9 * std::uint64_t{size.frames};  // of three seeds
+  if (kind == Kind::kCluster) return 9 * std::uint64_t{size.frames};  // three seeds
   return 6 * std::uint64_t{size.bones} * size.frames + 3 * std::uint64_t{size.vertices};
 }
 
@@ -16,7 +16,7 @@ std::uint64_t factors_of_component(Kind kind, const Size& size) {
   return size.vertices + 3 * std::uint64_t{size.frames};
 }
 
-// With as many vertices and components as its frames allow.
+// Returns a size with as many vertices and components as its frames allow.
 std::optional<Size> largest_size(Kind kind, const Level& level, std::uint32_t frames,
                                  std::uint32_t max_components) {
   Size size;
@@ -36,7 +36,7 @@ std::optional<Size> largest_size(Kind kind, const Level& level, std::uint32_t fr
   return size;
 }
 
-// Where two triangles are missing, a tube of six.
+// Adds a tube of six triangles in place of two.
 void add_handle(std::vector<Triangle>& triangles, const Triangle& a, const Triangle& b) {
   const Triangle opposite{b[0], b[2], b[1]};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -46,7 +46,7 @@ void add_handle(std::vector<Triangle>& triangles, const Triangle& a, const Trian
   }
 }
 
-// With learned weights in so many temporal layers.
+// Returns the largest size with learned weights in so many temporal layers.
 Size largest_frames(const Level& level, std::uint32_t frames, std::uint32_t temporal_layers) {
   Size size;
   size.frames = frames;
@@ -61,8 +61,7 @@ Size largest_frames(const Level& level, std::uint32_t frames, std::uint32_t temp
   return size;
 }
 
-// The size with the most filters that adapt; of those that have as many, the one with the most
-// vertices.
+// Returns the size with the most filters that adapt and, among these, the most vertices.
 Size hardest_frames(const Level& level, const Most& most) {
   Size best;
   std::uint64_t highest = 0;

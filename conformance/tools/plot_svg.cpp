@@ -1,4 +1,4 @@
-// plot_svg: draws what scripts/compare, scripts/reproduce and scripts/bench have measured.
+// plot_svg: draws measurements of scripts/compare, scripts/reproduce and scripts/bench.
 
 #include <cstdio>
 #include <exception>

@@ -50,7 +50,7 @@ rlpc_frame_format default_format() {
   return format;
 }
 
-// False: there are too many, or one has no name.
+// Copies the clips. False: there are too many, or one has no name.
 bool add_clips(const rlpc_encode_options& options, std::vector<Clip>& clips) {
   if (options.num_clips > RLPC_MAX_CLIPS) return false;
   if (options.num_clips > 0 && options.clips == nullptr) return false;

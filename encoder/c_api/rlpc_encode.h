@@ -16,15 +16,15 @@
 // call takes almost all of the time. Each GOF meets the target separately, and thus the whole
 // stream does (see frame_encoder.h). In the High profile, several GOFs are held and encoded
 // together (max_held_frames). The same frames and options give the same bytes on every
-// machine. A decoder verifies what has been written as it goes: one that is wrong is a bug of
-// the encoder, RLPC_INTERNAL_ERROR. No function throws or aborts. A handle may be used by one
+// machine. A decoder verifies the stream while it is written: a wrong stream is a bug of the
+// encoder, RLPC_INTERNAL_ERROR. No function throws or aborts. A handle may be used by one
 // thread at a time; different handles are independent.
 //
 // Memory: frames and reports are in buffers of the caller, and output is passed to a callback.
-// Only the handle must be closed; it can be placed in memory of the caller (place). The
-// analysis uses C++ operator new and no other allocator. If memory runs out, calls return
-// RLPC_OUT_OF_MEMORY, and the handle can only be closed, which releases everything. A thread
-// that calls these functions needs a stack of 256 KiB.
+// Only the handle must be closed; it can be in memory of the caller (place). The analysis uses
+// C++ operator new and no other allocator. If memory runs out, calls return RLPC_OUT_OF_MEMORY,
+// and the handle can only be closed, which releases everything. A thread that calls these
+// functions needs a stack of 256 KiB.
 #pragma once
 
 #include <stddef.h>
@@ -51,13 +51,14 @@ typedef struct rlpc_frame_format {
   uint32_t num_frames;      // exactly this many frames must follow; 0: not known (High profile)
   uint32_t frame_rate_numerator;  // frames per second; default 30 / 1
   uint32_t frame_rate_denominator;
-  // Bounding box of all frames, within 2^100. A box that is much too large makes the grid
-  // coarser.
+  // Bounding box of all frames, in units, within 2^100. A box that is much too large makes the
+  // grid coarser.
   float box_min[3];
   float box_max[3];
 } rlpc_frame_format;
 
-// RLPC_HIGH is version 1.2, which is not released: its streams may change.
+// Profile of the stream. RLPC_HIGH is version 1.2, which is not released: its streams may
+// change.
 typedef enum rlpc_profile { RLPC_BASELINE = 0, RLPC_MAIN = 1, RLPC_HIGH = 2 } rlpc_profile;
 
 typedef enum rlpc_preset { RLPC_FAST = 0, RLPC_MEDIUM = 1, RLPC_SLOW = 2 } rlpc_preset;
@@ -70,8 +71,8 @@ typedef enum rlpc_target {
   RLPC_TARGET_LOSSLESS = 4,
 } rlpc_target;
 
-// RLPC_KIND_BONES: Main and High; RLPC_KIND_FRAMES: High. RLPC_KIND_AUTO: the cheapest that the
-// profile has, for each GOF.
+// Kind of GOFs. RLPC_KIND_AUTO: for each GOF, the cheapest that the profile has;
+// RLPC_KIND_BONES: skinned GOFs, Main and High; RLPC_KIND_FRAMES: inter GOFs, High.
 typedef enum rlpc_gof_kind {
   RLPC_KIND_AUTO = 0,
   RLPC_KIND_CLUSTERS = 1,
@@ -89,17 +90,18 @@ typedef struct rlpc_encode_options {
   size_t struct_size;  // rlpc_encode_options_init sets it
   uint32_t profile;    // default RLPC_MAIN
   uint32_t preset;     // default RLPC_MEDIUM
-  // Default RLPC_TARGET_KG; approached from below, within 2 % (High: 4 %) if possible.
+  // rlpc_target, default RLPC_TARGET_KG; approached from below, to 2 % (High: 4 %) if possible.
   uint32_t target;
   double target_value;  // default 0.1; above zero and finite
   // Maximum frames per GOF; 0: 128, or 256 in the High profile; UINT32_MAX: one GOF of all.
   uint32_t gof_frames;
-  // Main: maximum per GOF; Baseline: average per cluster; up to 1024; 0: chosen.
+  // Number of components, up to 1024; Main: maximum per GOF; Baseline: average per cluster; 0:
+  // chosen.
   uint32_t components;
   uint32_t keep_order;   // 1: decoders restore the vertex order of the input; 0: they do not
   uint32_t hash_mode;    // default RLPC_HASH_GOF
   uint32_t least_level;  // lowest level that the stream may declare, 1 to 4; default 1
-  // JSON text to carry along, not validated, up to 1 MiB; null: none. Copied.
+  // JSON text for the metadata of the stream, not validated, up to 1 MiB; null: none. Copied.
   const char* metadata;
   // Memory for the handle: rlpc_encoder_bytes() bytes, aligned as by malloc, valid until the
   // handle is closed. Null: allocated by the library.
@@ -108,16 +110,16 @@ typedef struct rlpc_encode_options {
   // Encodings estimated to need more fail with RLPC_LIMIT_EXCEEDED; default 32 GiB.
   uint64_t max_memory_bytes;
   uint32_t threads;   // 1 to 256, otherwise RLPC_BAD_ARGUMENT; the stream does not depend on it
-  uint32_t reserved;  // was padding of earlier versions; not read
-  // High profile: temporal layers, 1 to RLPC_MAX_TEMPORAL_LAYERS, to which the stream can be
-  // cut; default 1, with which it cannot.
+  uint32_t reserved;  // padding in earlier versions; not read
+  // High profile: temporal layers, 1 to RLPC_MAX_TEMPORAL_LAYERS; the stream can be cut to
+  // fewer. Default 1.
   uint32_t temporal_layers;
-  // High profile: most frames that are held before they are encoded together, but at least
-  // those of one GOF; 0: as many as share a shared rig in memory, 2^23 positions or fewer.
+  // High profile: maximum number of frames that are held and encoded together, but at least one
+  // GOF; 0: as many as can share a shared rig, up to 2^23 positions.
   uint32_t max_held_frames;
   uint32_t gof_kind;  // default RLPC_KIND_AUTO
-  // High profile, 1: each frame is coded when it is added, in inter GOFs; a KG error is
-  // then met approximately. Default 0. Targets: all but RLPC_TARGET_BPVF.
+  // High profile, 1: each frame is coded when it is added, in inter GOFs; a KG error is then
+  // met approximately. Default 0. Not with RLPC_TARGET_BPVF.
   uint32_t low_delay;
   // Named parts of the sequence, num_clips of them, up to RLPC_MAX_CLIPS; copied. Default none.
   const rlpc_clip* clips;
@@ -125,60 +127,69 @@ typedef struct rlpc_encode_options {
 } rlpc_encode_options;
 
 typedef struct rlpc_encode_report {
-  size_t struct_size;  // as passed to rlpc_encoder_finish
+  size_t struct_size;  // rlpc_encoder_finish sets it
   uint64_t num_bytes;
   double bpvf;  // bits per vertex per frame, everything included
   double kg_error_percent;
-  double rms_error;  // units, as max_error
+  double rms_error;  // in units
   double max_error;
   uint32_t num_gofs;
   uint32_t level;
   uint32_t target_met;  // 1: met in every GOF
-  // Of the stream when cut to its first 1, 2, ... temporal layers, one fewer than it has;
-  // further values are 0.
+  // Size and KG error of the stream when cut to its first 1, 2, ... temporal layers, up to one
+  // fewer than it has; further values are 0.
   uint64_t temporal_cut_bytes[RLPC_MAX_TEMPORAL_LAYERS - 1];
   double temporal_cut_kg_error_percent[RLPC_MAX_TEMPORAL_LAYERS - 1];
 } rlpc_encode_report;
 
-// Receives the next bytes of the stream. Returns 0 on success.
+// Receives the next bytes of the stream. Returns 0 on success; other values stop the encoder
+// with RLPC_IO_FAILED.
 typedef int (*rlpc_write_function)(void* user, const void* bytes, size_t num_bytes);
 // NOLINTEND(readability-identifier-naming)
 
-// Set all members to their defaults, or zero. struct_size: sizeof the structure.
+// Sets all members to their defaults, or zero. struct_size: sizeof *format.
 RLPC_API void rlpc_frame_format_init(rlpc_frame_format* format, size_t struct_size);
+// Sets all members to their defaults, or zero. struct_size: sizeof *options.
 RLPC_API void rlpc_encode_options_init(rlpc_encode_options* options, size_t struct_size);
 
-// Size of a handle, for rlpc_encode_options.place.
+// Returns the size of a handle, bytes, for rlpc_encode_options.place.
 RLPC_API size_t rlpc_encoder_bytes(void);
 
-// Begins a stream. options may be null: defaults. On failure, *encoder is still a handle, which
-// provides the error text and must be closed; it is null only if an argument is null or
-// invalid, or if there is no memory for a handle. RLPC_BAD_INPUT: no stream can represent the
-// format; RLPC_LIMIT_EXCEEDED: encoding may need more than max_memory_bytes.
+// Begins a stream: `write` is called with `user` and the bytes. options: null for defaults.
+// Returns RLPC_OK; RLPC_BAD_ARGUMENT: an argument is null or not initialised, place is too
+// small or not aligned, or an option is outside its enumeration or range; RLPC_BAD_INPUT: no
+// stream can represent the format, or the options contradict each other; RLPC_LIMIT_EXCEEDED:
+// encoding may need more than max_memory_bytes; RLPC_OUT_OF_MEMORY; RLPC_INTERNAL_ERROR. After
+// a failure, *encoder is null, or a handle that provides the error text and must be closed.
 RLPC_API rlpc_status rlpc_encoder_create(const rlpc_frame_format* format,
                                          const rlpc_encode_options* options,
                                          rlpc_write_function write, void* user,
                                          rlpc_encoder** encoder);
-// Releases the handle. Without rlpc_encoder_finish before, the stream is incomplete. encoder
-// may be null.
+// Releases the handle; encoder may be null. The stream is incomplete unless rlpc_encoder_finish
+// has returned RLPC_OK.
 RLPC_API void rlpc_encoder_close(rlpc_encoder* encoder);
 
-// The error of the last failed call; "" if none failed. Valid until the next call on the
-// handle.
+// Returns the error text of the last failed call, "" if none failed; never null. Valid until
+// the next call on the handle.
 RLPC_API const char* rlpc_encoder_error_text(const rlpc_encoder* encoder);
 
 // Adds the next frame: x, y and z of each vertex, in units. num_values: 3 * num_vertices.
-// RLPC_BAD_INPUT: a coordinate outside the box, or more than num_frames frames; RLPC_IO_FAILED:
-// the callback failed. These errors are sticky; but with low_delay, a frame that is refused is
-// left out, and the stream can go on or be finished.
+// Returns RLPC_OK; RLPC_BAD_ARGUMENT: null, or another num_values; RLPC_BAD_INPUT: a NaN, a
+// coordinate outside the box, more than num_frames frames, or frames that need a higher level;
+// RLPC_IO_FAILED: the callback failed; RLPC_OUT_OF_MEMORY; RLPC_INTERNAL_ERROR. All errors but
+// RLPC_BAD_ARGUMENT are sticky; with low_delay, RLPC_BAD_INPUT is not: the frame is left out,
+// and the stream can be continued or finished.
 RLPC_API rlpc_status rlpc_encoder_add_frame(rlpc_encoder* encoder, const float* xyz,
                                             size_t num_values);
-// Ends the stream, after the last frame. RLPC_BAD_INPUT: fewer than num_frames frames, or none.
-// report may be null; otherwise struct_size is sizeof *report.
+// Ends the stream, after the last frame. report may be null; otherwise struct_size is sizeof
+// *report. Returns RLPC_OK; RLPC_BAD_ARGUMENT: encoder is null; RLPC_BAD_INPUT: fewer than
+// num_frames frames, or none; RLPC_IO_FAILED: the callback failed; RLPC_OUT_OF_MEMORY;
+// RLPC_INTERNAL_ERROR. Errors are sticky.
 RLPC_API rlpc_status rlpc_encoder_finish(rlpc_encoder* encoder, rlpc_encode_report* report,
                                          size_t struct_size);
-// After rlpc_encoder_finish: the input index of each decoded vertex. (With keep_order, decoders
-// restore the input order.) num_values: num_vertices.
+// Copies the input index of each decoded vertex, after rlpc_encoder_finish. (With keep_order,
+// decoders restore the input order.) num_values: num_vertices. Returns RLPC_OK;
+// RLPC_BAD_ARGUMENT: null, another num_values, or the stream is not finished.
 RLPC_API rlpc_status rlpc_encoder_vertex_order(rlpc_encoder* encoder, uint32_t* input_vertex,
                                                size_t num_values);
 

@@ -1,4 +1,4 @@
-// What the encoder reports, and whom it tells.
+// The report of the encoder, and the callbacks for its output and its progress.
 #pragma once
 
 #include <cstdint>
@@ -20,19 +20,19 @@ struct PartBits {
   std::uint64_t vertex_order = 0;
   std::uint64_t gofs = 0;
   std::uint64_t hashes = 0;
-  std::uint64_t metadata = 0;  // and clip table
+  std::uint64_t metadata = 0;  // metadata and clip table
   std::uint64_t attributes = 0;
   std::uint64_t asset = 0;
 };
 
 // A stream without the slices of its higher temporal layers, as rlpcinfo --extract writes it.
 struct TemporalCut {
-  std::uint32_t layers = 1;  // that are left
+  std::uint32_t layers = 1;  // number of layers left
   std::uint64_t bytes = 0;
   double kg_error_percent = 0.0;
 };
 
-// Inter GOFs with the same pattern, and the same number of patches.
+// Number of inter GOFs with one pattern and one number of patches.
 struct PatternCount {
   FramePattern pattern;
   std::uint32_t patches = 0;
@@ -41,7 +41,8 @@ struct PatternCount {
 
 struct EncodeReport {
   SequenceHeader header;
-  // Of the decoded float32 positions, in input vertex order, against FrameSource::read_exact().
+  // Errors of the decoded float32 positions, in input vertex order, from
+  // FrameSource::read_exact().
   Metrics metrics;
   std::uint64_t bytes = 0;
   double bpvf = 0.0;  // bits per vertex per frame, everything included
@@ -52,20 +53,19 @@ struct EncodeReport {
   double step = 0.0;             // quantiser step, units; 0 with qu and qc
   std::uint32_t trials = 0;      // encodings during the search for the target
   bool target_met = true;        // the target is not exceeded
-  // The largest distance of a vertex of the input from the 32-bit floats that were coded, in
-  // units: errors are measured from the numbers of the input, and include it.
+  // Largest distance of an input vertex from the 32-bit floats that were coded, in units.
+  // Errors are measured from the numbers of the input, and include it.
   double largest_rounding = 0.0;
-  std::vector<PatternCount> patterns;       // of inter GOFs, in order of appearance
+  std::vector<PatternCount> patterns;       // in order of appearance
   std::vector<AttributeReport> attributes;  // in the order of the stream
-  std::vector<TemporalCut> temporal_cuts;   // to 1 layer and more; empty: there is only one
+  std::vector<TemporalCut> temporal_cuts;   // [layers - 1]; empty: only one layer
   std::vector<std::uint32_t> input_vertex;  // [decoded vertex], index in the input
 };
 
-// Receives the next bytes of the stream. False stops the encoder, for example if the disk is
-// full.
+// Receives the next bytes of the stream. Returns false to stop the encoder, for example if the
+// disk is full.
 using ByteSink = std::function<bool(std::span<const std::uint8_t>)>;
-// Called occasionally with the fraction done, 0 to 1, to show progress; by any thread, one at a
-// time.
+// Receives the fraction done, 0 to 1, from time to time; called by any thread, one at a time.
 using Progress = std::function<void(double)>;
 
 }  // namespace rlpc

@@ -151,7 +151,7 @@ std::unique_ptr<FrameSource> turn_source(std::unique_ptr<FrameSource> source,
     turn_over(shape.triangles);
     turn_over(shape.attributes);
   }
-  // A mesh that has these axes already keeps its normals.
+  // A mesh that already has these axes keeps its normals.
   if (shape.axes_of_mesh == axes) {
     shape.axes_of_mesh.reset();
   } else {

@@ -1,4 +1,4 @@
-// What different programs call x, y and z.
+// Conversion between the axes of different programs.
 #pragma once
 
 #include <array>
@@ -17,16 +17,16 @@ namespace rlpc {
 void turn(const Axes& axes, std::span<float> xyz);
 void turn(const Axes& axes, std::span<double> xyz);
 
-// Whether a left hand becomes a right one.
+// Whether the axes mirror: a left hand becomes a right one.
 bool is_mirror(const Axes& axes);
 
-// "x,z,-y": the new x, y and z as signed old axes, each old one once. No spaces.
+// Parses "x,z,-y": the new x, y and z as signed old axes, each old one once. No spaces.
 InputResult<Axes> parse_axes(std::string_view text);
 std::string axes_text(const Axes& axes);
 
-// The same frames with other axes. If these are mirrored, triangles turn over, so that they
-// keep facing the same side; not if that takes positions to the axes of the mesh that the
-// triangles are from.
+// Return the same frames with other axes. If these mirror, triangles are reversed so that they
+// keep facing the same side; but not if positions are taken to the axes of the mesh that the
+// triangles come from.
 std::unique_ptr<FrameSource> turn_source(std::unique_ptr<FrameSource> source, const Axes& axes);
 std::unique_ptr<FrameStream> turn_stream(std::unique_ptr<FrameStream> stream, const Axes& axes);
 

@@ -12,10 +12,10 @@ namespace rlpc {
 
 namespace {
 
-// Of the six decimals of most text formats, at sizes from 0.01.
+// Rounding to the six decimals of most text formats, at sizes from 0.01.
 constexpr double kRounding = 1e-4;
 
-// All axes: first those that mirror nothing, beginning with axes as they are.
+// Returns all axes: first those that do not mirror, beginning with axes as they are.
 std::vector<Axes> make_all_axes() {
   std::vector<Axes> all;
   std::array<std::uint8_t, 3> from{0, 1, 2};
@@ -37,7 +37,8 @@ constexpr std::array<std::uint8_t, 3> kOtherUp{0, 2, 1};
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-// [a][b]: the sum over vertices of coordinate a in one pose times coordinate b in another.
+// Returns [a][b]: the sum over vertices of coordinate a in one pose times coordinate b in
+// another.
 Matrix products_of(std::span<const float> left, std::span<const float> right) {
   Matrix m{};
   for (std::size_t i = 0; i < left.size(); i += 3) {
@@ -56,7 +57,7 @@ double square_of(std::span<const float> pose) {
   return sum;
 }
 
-// The positions from their mean.
+// Returns the positions relative to their mean.
 std::vector<float> from_centre(std::span<const float> xyz) {
   std::array<double, 3> centre{};
   for (std::size_t i = 0; i < xyz.size(); ++i) centre[i % 3] += static_cast<double>(xyz[i]);
@@ -69,7 +70,8 @@ std::vector<float> from_centre(std::span<const float> xyz) {
   return pose;
 }
 
-// The angle between poses with this product; poses without extent are at right angles to all.
+// Returns the angle between poses with this product; poses without extent are at right angles
+// to all.
 double angle_of(double product, double left_square, double right_square) {
   const double scale = std::sqrt(left_square) * std::sqrt(right_square);
   return scale > 0.0 ? std::acos(std::clamp(product / scale, -1.0, 1.0)) : std::numbers::pi / 2;

@@ -26,21 +26,21 @@ namespace rlpc {
 // mesh resembles no frame; nor which side is mirrored of meshes that are flat.
 class AxesFit {
  public:
-  // All values finite, 3 per vertex, as in the frames.
+  // mesh: 3 finite values per vertex, as in the frames.
   explicit AxesFit(std::span<const float> mesh);
 
   void add_frame(std::span<const float> xyz);
-  // A frame is equal to the mesh: no more frames are needed.
+  // Whether a frame is equal to the mesh, so that no more frames are needed.
   bool matches() const;
-  // The axes that frames need to have those of the mesh; none if they have them, or if it
-  // cannot tell.
+  // Returns the axes to turn frames to so that they have those of the mesh; none if they have
+  // them, or if the fit cannot tell.
   std::optional<Axes> axes_of_mesh() const;
 
  private:
   static constexpr std::size_t kNumAxes = 48;  // permutations of three axes, with signs
 
-  std::vector<float> mesh_;   // from its centre
-  std::vector<float> first_;  // frame, from its centre
+  std::vector<float> mesh_;   // relative to its centre
+  std::vector<float> first_;  // first frame, relative to its centre
   double mesh_square_ = 0.0;  // sums of squares
   double first_square_ = 0.0;
   std::array<double, kNumAxes> nearest_{};  // the smallest angle of a frame to the mesh

@@ -16,7 +16,7 @@ namespace {
 
 using Pose = std::vector<float>;
 
-// A tall body: its extents differ, and so do its upper and its lower half.
+// Returns a tall body, whose extents differ, as do its upper and its lower half.
 Pose body() {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
@@ -40,7 +40,7 @@ Pose bent(Pose pose, float angle) {
   return pose;
 }
 
-// About the x axis.
+// Rotates a pose about the x axis.
 Pose rotated(Pose pose, float angle) {
   for (std::size_t i = 0; i < pose.size(); i += 3) {
     const float y = pose[i + 1];
@@ -56,7 +56,7 @@ Pose turned(const std::string& axes, Pose pose) {
   return pose;
 }
 
-// The text of the axes found; empty: none.
+// Returns the text of the axes found; empty: none.
 std::string found(const Pose& mesh, const std::vector<Pose>& frames) {
   AxesFit fit(mesh);
   for (const Pose& frame : frames) fit.add_frame(frame);

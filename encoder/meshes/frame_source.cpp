@@ -49,7 +49,7 @@ std::optional<FrameRate> parse_fraction(std::string_view text) {
   return FrameRate{*numerator / divisor, *denominator / divisor};
 }
 
-// Of "uv12", 12; of a name without one, 0.
+// Returns the number at the end of a name: 12 for "uv12"; 0 if there is none.
 std::uint32_t number_of(std::string_view name) {
   const std::size_t digits = name.find_last_not_of("0123456789") + 1;
   return parse_u32(name.substr(digits)).value_or(0);

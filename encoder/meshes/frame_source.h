@@ -18,12 +18,12 @@
 
 namespace rlpc {
 
-// One line for the user: the file, the place in it (line, byte or frame), what was expected,
-// and what to do.
+// Error for the user, in one line: the file, the place in it (line, byte or frame), what was
+// expected, and what to do.
 struct InputError {
   std::string message;
   bool is_limit = false;  // the input may be valid but exceeds a limit of the caller
-  bool is_fault = false;  // not the input but the encoder is wrong
+  bool is_fault = false;  // the encoder is wrong, not the input
 };
 template <class T>
 using InputResult = Result<T, InputError>;
@@ -62,41 +62,41 @@ class FrameSource {
   std::uint32_t num_vertices() const { return shape_.num_vertices; }  // at least 1
   std::uint32_t num_frames() const { return shape_.num_frames; }      // at least 1
   FrameRate frame_rate() const { return shape_.frame_rate; }
-  // Every index is below num_vertices(). May be empty: a point cloud.
+  // Returns the triangles, with indices below num_vertices(). Empty for a point cloud.
   const std::vector<Triangle>& triangles() const { return shape_.triangles; }
-  // Notes for the user, one line each, about dropped or merged data. Reading frames may add
-  // some.
+  // Returns notes for the user, one line each, about dropped or merged data. Reading frames may
+  // add some.
   const std::vector<std::string>& notes() const { return shape_.notes; }
-  // All files read, including those that the input refers to.
+  // Returns all files read, including those that the input refers to.
   const std::vector<std::string>& files() const { return shape_.files; }
-  // Parts that the input names.
+  // Returns the parts of the sequence that the input names.
   const std::vector<Clip>& clips() const { return shape_.clips; }
-  // Triangles from a mesh whose axes are not those of the frames: the axes to turn frames to.
+  // Returns the axes to turn frames to, if the triangles are from a mesh with other axes.
   const std::optional<Axes>& axes_of_mesh() const { return shape_.axes_of_mesh; }
   const Shape& shape() const { return shape_; }
 
-  // Texture coordinates, normals and the like, of triangles().
+  // Returns texture coordinates, normals and other attributes of triangles().
   const SourceAttributes& attributes() const { return shape_.attributes; }
-  // Materials, textures and names of parts: a GLB without geometry; empty: none.
+  // Returns materials, textures and names of parts: a GLB without geometry; empty: none.
   const std::string& asset() const { return shape_.asset; }
   const SourceMaterials& materials() const { return shape_.materials; }
 
-  // Keeps at most so many attributes: drops those with the highest numbers in their names, the
-  // last of several, and adds a note that names them.
+  // Keeps at most `most` attributes: drops those with the highest numbers in their names, the
+  // last of equal ones, and adds a note that names them.
   void limit_attributes(std::size_t most);
 
-  // Estimated memory held by the source.
+  // Returns the estimated memory held by the source.
   std::uint64_t memory_bytes() const { return shape_.memory_bytes; }
 
   // Reads the positions of one frame: xyz[3 * vertex + axis], 3 * num_vertices() values, in
   // units; all finite on success. frame < num_frames(), in any order.
   virtual std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) = 0;
-  // The same frame as the numbers of the input, before they become floats: what errors are
-  // measured against. By default, the floats.
+  // Reads the same frame as the numbers of the input, before they become floats; errors are
+  // measured against them. By default, the floats.
   virtual std::optional<InputError> read_exact(std::uint32_t frame, std::span<double> xyz);
   // Whether read_exact() may differ from read_frame().
   virtual bool is_finer_than_floats() const { return false; }
-  // The name, for messages, of the file that holds a frame.
+  // Returns the name, for messages, of the file that holds a frame.
   virtual std::string file_of(std::uint32_t /*frame*/) const { return "input"; }
 
  protected:
@@ -112,7 +112,7 @@ class FrameSource {
 // The default memory limit.
 inline constexpr std::uint64_t kUsualEncoderBytes = std::uint64_t{1} << 35;
 
-// What to read:
+// Input to read.
 //   path                points  meaning
 //   mesh.obj                    one frame
 //   mesh.obj            x.pc2   triangles from the mesh, positions from the point cache;
@@ -144,17 +144,18 @@ struct InputOptions {
   std::vector<std::string> animations{};
   bool weld = true;            // glTF only: merge vertices that coincide in every frame
   bool textures = true;        // glTF and OBJ: include images in the asset
-  std::optional<Axes> axes{};  // to turn positions to
+  std::optional<Axes> axes{};  // axes to turn positions to
   // Input estimated to need more is an error. Files may claim far more than they contain.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;
   std::vector<std::string> more_paths{};  // further files of a sequence
 };
 
-// "25", "30000/1001" or "29.97" as an exact, reduced fraction (the last one is 2997/100).
+// Parses "25", "30000/1001" or "29.97" as an exact, reduced fraction (the last one is
+// 2997/100).
 InputResult<FrameRate> parse_frame_rate(std::string_view text);
 
-// The nearest common frame rate: an integer, N * 1000 / 1001, or thousandths. For rates that
-// are known to about five digits; none outside 2 to 1000.
+// Returns the nearest common frame rate: an integer, N * 1000 / 1001, or thousandths. For rates
+// that are known to about five digits; none outside 2 to 1000.
 std::optional<FrameRate> frame_rate_near(double frames_per_second);
 
 }  // namespace rlpc

@@ -11,7 +11,7 @@ namespace rlpc {
 
 class GlbAsset {
  public:
-  // Without asset, bufferViews and buffers.
+  // The document without asset, bufferViews and buffers.
   nlohmann::json root = nlohmann::json::object();
 
   // Adds bytes to the binary chunk; returns the number of their view.
@@ -25,11 +25,12 @@ class GlbAsset {
   std::string binary_;
 };
 
-// "image/png" and others of glTF and its extensions, by the first bytes; empty: of another
-// type.
+// Returns "image/png" or another type of glTF and its extensions, by the first bytes; empty:
+// another type.
 std::string type_of_image(std::string_view bytes);
 
-// The member of an object that is a whole number below a limit; none: it is not, or not there.
+// Returns a member of an object that is a whole number below a limit; none: it is missing, or
+// anything else.
 std::optional<std::size_t> index_of(const nlohmann::json& object, const char* name,
                                     std::size_t limit);
 

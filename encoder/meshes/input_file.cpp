@@ -22,7 +22,7 @@ PipedInput& standard_input() {
   return input;
 }
 
-// How the texts begin that Git keeps in place of large files.
+// Beginning of the texts that Git keeps in place of large files.
 constexpr std::string_view kLfsPointer = "version https://git-lfs";
 constexpr std::uint64_t kMaxLfsPointerBytes = 1024;
 

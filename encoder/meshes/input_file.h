@@ -17,14 +17,15 @@ namespace rlpc {
 
 class InputFile {
  public:
-  // Standard input is read completely when first opened, up to max_memory_bytes, and may be
-  // opened again. Errors: a file that cannot be read, or a Git LFS pointer in its place.
+  // Opens a file. Standard input is read completely when first opened, up to max_memory_bytes,
+  // and may be opened again. Errors: a file that cannot be read, or a Git LFS pointer in its
+  // place.
   static InputResult<InputFile> open(const std::string& path,
                                      std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
   const std::string& path() const { return path_; }  // for messages: see name_of_input()
   std::uint64_t size() const { return size_; }
-  // Memory that the contents occupy.
+  // Returns the memory that the contents occupy.
   std::uint64_t memory_bytes() const { return stream_ ? 0 : size_; }
   // Fills `bytes`; offset + bytes.size() <= size().
   std::optional<InputError> read(std::uint64_t offset, std::span<char> bytes);
@@ -38,14 +39,14 @@ class InputFile {
   std::unique_ptr<std::ifstream> stream_;  // none: standard input
 };
 
-// The text without leading white space.
+// Returns the text without leading white space.
 inline std::string_view after_blanks(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   return first == text.npos ? std::string_view() : text.substr(first);
 }
 
-// The first bytes of a file, at most 64; empty if it cannot be read. Reads no more of standard
-// input.
+// Returns the first bytes of a file, at most 64; empty if it cannot be read. Reads no more of
+// standard input.
 std::string beginning_of(const std::string& path);
 
 // Reads `size` bytes from `offset`, which must be within the file.
@@ -55,10 +56,10 @@ InputResult<std::string> read_text(InputFile& file, std::uint64_t offset, std::u
 InputResult<std::string> read_whole_file(const std::string& path,
                                          std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
-// Text for messages: the memory limit is exceeded.
+// Returns the message that the memory limit is exceeded.
 std::string memory_problem(std::uint64_t max_memory_bytes);
 
-// An error for the first NaN or infinite value of a frame.
+// Returns an error for the first NaN or infinite value of a frame.
 std::optional<InputError> check_finite(const std::string& path, std::uint32_t frame,
                                        std::span<const float> xyz);
 

@@ -23,8 +23,8 @@ struct InputFormat {
 
   Holds holds;
   std::span<const std::string_view> extensions;  // lower case, ".obj"
-  // Whether a file of this format may begin with these bytes, at most 64; null: not
-  // recognisable by its contents.
+  // Whether a file of this format may begin with these bytes, at most 64; null: the contents do
+  // not show the format.
   bool (*begins)(std::string_view beginning) = nullptr;
   bool has_clips = false;  // --animation and welding apply
 
@@ -36,19 +36,19 @@ struct InputFormat {
       nullptr;
 };
 
-// The most reliably recognised formats come first.
+// Returns all formats, the most reliably recognised first.
 std::span<const InputFormat* const> input_formats();
 
-// The format by the extension, otherwise by the contents; null: unknown.
+// Returns the format by the extension, otherwise by the contents; null: unknown.
 const InputFormat* format_of(const std::string& path);
-// The format by the extension only; null: unknown.
+// Returns the format by the extension only; null: unknown.
 const InputFormat* format_of_extension(const std::string& path);
 
-// ".obj, .off or .ply": the extensions of formats of these kinds.
+// Returns ".obj, .off or .ply": the extensions of formats of these kinds.
 std::string extensions_text(std::initializer_list<InputFormat::Holds> holds);
 
-// An existing file next to `path` that differs only in its extension, one of a format of this
-// kind; empty: none.
+// Returns an existing file next to `path` that differs only in its extension, one of a format
+// of this kind; empty: none.
 std::string sibling_of(const std::string& path, InputFormat::Holds holds);
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// Which notes of a source must not be missed.
+// Finds notes of a source that must not be missed.
 #pragma once
 
 #include <string_view>

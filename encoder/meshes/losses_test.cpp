@@ -1,4 +1,4 @@
-// Whatever is in an input is in the stream, or named.
+// Tests that all contents of an input are in the stream, or named.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void put_float(std::string& bytes, float value, bool big_endian) {
   put_number(bytes, std::bit_cast<std::uint32_t>(value), big_endian);
 }
 
-// Of three points and two samples.
+// Returns a PC2 file of three points and two samples.
 std::string pc2(float start, float rate) {
   std::string bytes("POINTCACHE2\0\1\0\0\0\3\0\0\0", 20);
   put_float(bytes, start, false);
@@ -57,7 +57,7 @@ std::string mdd(const std::vector<float>& times) {
 
 class LossesTest : public ScratchFolderTest {
  protected:
-  // All notes, a line each, or the error.
+  // Returns all notes, a line each, or the error.
   static std::string notes_of(const InputOptions& options) {
     const auto source = open_frame_source(options);
     if (!source) return source.error().message;
@@ -93,7 +93,7 @@ TEST_F(LossesTest, NamesWhatObjFilesHaveAndStreamsHaveNot) {
                 "weights of vertices (1)", "numbers after vertices that are no colour (1)",
                 "third texture coordinates (1)",
                 "unknown lines, the first of them \"show\" (1)", "b.mtl", "gloss.png"});
-  // What stays, or says nothing.
+  // These stay, or mean nothing.
   EXPECT_EQ(notes_of({put("b.obj",
                           "# by hand\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\n"
                           "vt 0 0\nvn 0 0 1\ns off\nf 1/1/1 2/1/1 3/1/1\n"),
@@ -119,14 +119,14 @@ TEST_F(LossesTest, NamesParametersOfMaterialsThatStreamsHaveNot) {
             "(\"spare\")\n");
   EXPECT_EQ(notes_with("newmtl a\nKd 1 0 2\nd -halo 0.5\n"),
             "dropped: parameters of materials (Kd outside 0 to 1, d)\n");
-  // Values that say nothing, and those that are kept.
+  // Values that mean nothing, and values that are kept.
   EXPECT_EQ(notes_with("# by hand\nnewmtl a\nKd 1 0 0\nKe 0 1 0\nd 0.5\nPr 0.1\nPm 1\n"
                        "Ks 0 0 0\nKa 0 0 0\nTf 1 1 1\nNi 1\nPc 0\n"),
             "");
   EXPECT_EQ(notes_with("newmtl a\nKd 1 0 0\nNs 300\n"), "");
 }
 
-// Each of 100,000 lines is told once, and only some of them.
+// 100,000 lines are reported once, and only some of them.
 TEST_F(LossesTest, TellsOfFewOfManyMaterialFiles) {
   std::string text;
   for (int i = 0; i < 20000; ++i) text += "mtllib " + std::to_string(i % 1000) + ".mtl\n";
@@ -135,7 +135,7 @@ TEST_F(LossesTest, TellsOfFewOfManyMaterialFiles) {
   EXPECT_NE(notes.find("995 other .mtl files"), std::string::npos) << notes;
 }
 
-// Not a part of it that nobody has set.
+// The message names the limit, not a part of it that nobody has set.
 TEST_F(LossesTest, NamesTheMemoryLimitThatIsSet) {
   put("m.mtl", "newmtl a\nKd 1 0 0\n" + std::string(3000000, '#') + "\n");
   InputOptions options{
@@ -225,7 +225,7 @@ TEST_F(LossesTest, NamesWhatLaterFramesHaveOtherwise) {
                 "f3.obj: dropped: points (1)", "f4.obj: names of materials are dropped"});
 }
 
-// A triangle with two morph targets, of which the animation moves the second.
+// Builds a triangle with two morph targets, of which the animation moves the second.
 GltfBuilder morphing_triangle() {
   GltfBuilder builder;
   const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -297,7 +297,7 @@ TEST_F(LossesTest, NamesWhatGltfFilesHaveAndStreamsHaveNot) {
   Json& root = builder.json;
   Json& primitive = root["meshes"][0]["primitives"][0];
   const std::size_t pairs = builder.add("VEC2", std::vector<float>(6, 0.5F));
-  primitive["attributes"]["TEXCOORD_1"] = pairs;  // without TEXCOORD_0
+  primitive["attributes"]["TEXCOORD_1"] = pairs;  // TEXCOORD_0 is missing
   primitive["attributes"]["_HEAT"] = primitive["attributes"]["POSITION"];
   primitive["targets"][0]["COLOR_0"] = primitive["attributes"]["POSITION"];
   Json other = primitive;

@@ -34,7 +34,7 @@ Vec3 face_normal(std::span<const float> xyz, const Triangle& t) {
       {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]});
 }
 
-// IEC 61966-2-1
+// Converts from sRGB (IEC 61966-2-1).
 double linear_of_srgb(double x) {
   if (x <= 0.04045) return x / 12.92;
   return det_exp2(2.4 * det_log2((x + 0.055) / 1.055));
@@ -96,7 +96,7 @@ SourceAttribute normal_attribute(std::vector<float> normals,
 
 SourceAttribute colour_attribute(std::vector<float> values, std::uint32_t num_components,
                                  bool are_bytes, std::vector<std::uint32_t> value_of_corner) {
-  // The darkest colours of sRGB are 1/3295 apart, so that 12 bits tell them from each other.
+  // The darkest colours of sRGB are 1/3295 apart, so 12 bits distinguish them.
   constexpr std::uint32_t kSteps = 4095;
   for (std::size_t i = 0; i < values.size(); ++i) {
     double value = values[i];

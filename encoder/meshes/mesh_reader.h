@@ -13,20 +13,20 @@ namespace rlpc {
 
 struct SingleMesh {
   std::vector<float> xyz;  // 3 per vertex, at least one vertex, all finite
-  // What the numbers in the file exceed the floats in xyz by; where it is shorter, by nothing.
+  // Differences of the numbers in the file from the floats in xyz; 0 beyond its size.
   std::vector<float> left{};
   std::vector<Triangle> triangles;
-  std::vector<MeshPolygon> polygons{};  // those of more than one triangle, in order
+  std::vector<MeshPolygon> polygons{};  // only those of more than one triangle, in order
   PolygonCuts cuts{};                   // polygons whose triangles are not a fan
-  std::optional<FrameRate> frame_rate;  // of a comment "frame_rate N/D" in the file
-  SourceAttributes attributes{};        // of the triangles
+  std::optional<FrameRate> frame_rate;  // from a comment "frame_rate N/D" in the file
+  SourceAttributes attributes{};
   SourceMaterials materials{};
-  std::string asset{};                        // as FrameSource::asset()
-  std::string material_library{};             // as OBJ files name .mtl files, by line
-  std::vector<std::string> material_files{};  // those that have been read, and their images
+  std::string asset{};                        // see FrameSource::asset()
+  std::string material_library{};             // .mtl files as an OBJ file names them, by line
+  std::vector<std::string> material_files{};  // files that have been read, and their images
   std::vector<std::string> notes{};           // about dropped data
 
-  // Of what grows while a file is read.
+  // Returns the memory of members that grow while a file is read.
   std::uint64_t memory_bytes() const {
     return (std::uint64_t{xyz.capacity()} + left.capacity()) * sizeof(float) +
            std::uint64_t{triangles.capacity()} * sizeof(Triangle) +
@@ -35,7 +35,7 @@ struct SingleMesh {
   }
 };
 
-// What to read of a mesh, and its memory limits, in addition to the text that it is read from.
+// Parts of a mesh to read, and its memory limits, in addition to the text that it is read from.
 struct MeshLimit {
   std::uint64_t of_all = kUsualEncoderBytes;  // for messages
   std::uint64_t of_mesh = kUsualEncoderBytes;
@@ -43,13 +43,14 @@ struct MeshLimit {
   bool cuts_polygons = true;    // otherwise all are fans from their first corner
 
   // Whether a vector may grow by one element: growing takes three times its memory. holds: has
-  // memory_bytes(), with those of the vector.
+  // memory_bytes(), which include the vector.
   template <class Holder, class T>
   bool leaves_room(const Holder& holds, const std::vector<T>& grows) const {
     if (grows.size() < grows.capacity()) return true;
     return holds.memory_bytes() + 2 * std::uint64_t{grows.capacity()} * sizeof(T) <= of_mesh;
   }
-  // Adds the last triangles of a mesh, from `first` on, as one face. False: too much memory.
+  // Adds the last triangles of a mesh, from `first` on, as one face. Returns false if that
+  // takes too much memory.
   bool add_face(SingleMesh& mesh, std::size_t first) const {
     const std::size_t count = mesh.triangles.size() - first;
     if (count < 2) return true;
@@ -57,7 +58,7 @@ struct MeshLimit {
     mesh.polygons.push_back({first, static_cast<std::uint32_t>(count)});
     return true;
   }
-  // Whether so many more bytes may be held.
+  // Whether `bytes` more bytes may be held.
   template <class Holder>
   bool leaves_room_for(const Holder& holds, std::uint64_t bytes) const {
     return holds.memory_bytes() + bytes <= of_mesh;
@@ -73,13 +74,13 @@ InputResult<SingleMesh> read_mesh(const std::string& path,
                                   std::uint64_t max_memory_bytes = kUsualEncoderBytes,
                                   bool with_attributes = true, bool cuts_polygons = true);
 
-// The shape of a source with triangles, attributes and notes of `mesh`. The frame rate is
-// `frame_rate` if given, otherwise that of the mesh, otherwise `usual`.
+// Returns the shape of a source with triangles, attributes and notes of `mesh`. The frame rate
+// is `frame_rate` if given, otherwise that of the mesh, otherwise `usual`.
 FrameSource::Shape shape_of(SingleMesh mesh, std::uint32_t num_frames,
                             const std::optional<FrameRate>& frame_rate,
                             const FrameRate& usual = {});
 
-// The extension of `path` in lower case: ".obj" for "a/B.OBJ".
+// Returns the extension of `path` in lower case: ".obj" for "a/B.OBJ".
 std::string lower_extension(const std::string& path);
 
 }  // namespace rlpc

@@ -67,7 +67,7 @@ std::size_t TextWords::line_end_length(std::size_t at) const {
   return text_[at] == '\r' && at + 1 < text_.size() && text_[at + 1] == '\n' ? 2 : 1;
 }
 
-// Bytes of a backslash and line end at pos_; 0 if there is none.
+// Returns the bytes of a backslash and line end at pos_; 0 if there is none.
 std::size_t TextWords::continuation_length() const {
   if (text_[pos_] != '\\' || pos_ + 1 >= text_.size() || !is_line_end(text_[pos_ + 1]))
     return 0;

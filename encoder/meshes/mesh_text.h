@@ -17,16 +17,16 @@ class TextWords {
 
   bool at_end() const { return pos_ == text_.size(); }
   std::uint64_t line() const { return line_; }
-  // The next word of this line; empty at its end.
+  // Returns the next word of this line; empty at its end.
   std::string_view next();
-  // The next word of this or a later line; empty at the end.
+  // Returns the next word of this or a later line; empty at the end.
   std::string_view next_of_any_line();
-  // The words that are left of this line, with a blank between them.
+  // Returns the remaining words of this line, with a blank between them.
   std::string rest_of_words();
-  // The rest of this line, including any comment.
+  // Returns the rest of this line, including any comment.
   std::string_view rest();
   void next_line();
-  // Bytes from the start of the text.
+  // Returns the position, bytes from the start of the text.
   std::size_t position() const { return pos_; }
 
  private:
@@ -41,18 +41,18 @@ class TextWords {
   std::uint64_t line_;
 };
 
-// A word for error messages: quoted, made printable, and shortened.
+// Returns a word for error messages: quoted, made printable, and shortened.
 std::string quoted(std::string_view word);
 
 // Parses all of `word` as a finite float, correctly rounded; otherwise sets `problem`. left: if
-// given, set to what the number exceeds the float by.
+// given, set to the number minus the float.
 float parse_coordinate(std::string_view word, std::optional<std::string>& problem,
                        float* left = nullptr);
 
-// All of `word` as a finite number; none: it is not one.
+// Returns all of `word` as a finite number; none: it is not one.
 std::optional<double> parse_number(std::string_view word);
 
-// The shortest text that parse_coordinate() reads as the same number.
+// Returns the shortest text that parse_coordinate() reads as the same number.
 std::string shortest_text(float x);
 
 }  // namespace rlpc

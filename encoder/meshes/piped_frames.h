@@ -16,7 +16,7 @@ class PipedFrames {
   // The file is not owned. name: for messages.
   PipedFrames(std::FILE* file, std::string name) : file_(file), name_(std::move(name)) {}
 
-  // False at the end. Errors: see FrameStream::next_frame().
+  // Reads a frame. Returns false at the end. Errors: see FrameStream::next_frame().
   InputResult<bool> read(std::span<char> frame) {
     const std::size_t got = std::fread(frame.data(), 1, frame.size(), file_);
     if (std::ferror(file_) != 0) return InputError{name_ + ": reading it failed"};
@@ -33,7 +33,7 @@ class PipedFrames {
  private:
   std::FILE* file_;
   std::string name_;
-  std::uint32_t num_frames_ = 0;  // that have been read
+  std::uint32_t num_frames_ = 0;  // number of frames read
 };
 
 }  // namespace rlpc

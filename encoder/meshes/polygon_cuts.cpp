@@ -64,7 +64,7 @@ bool cut_polygons(SingleMesh& mesh, const MeshLimit& limit) {
   std::size_t num_folded = 0;
   std::size_t max_corners = 0;
   for (const MeshPolygon& polygon : mesh.polygons) {
-    // What splitting a polygon takes for each corner, with its result.
+    // Memory for splitting a polygon, per corner, with its result.
     constexpr std::uint64_t kBytes = 150;
     if (!limit.leaves_room_for(mesh, kBytes * polygon.num_triangles)) return false;
     corners.clear();

@@ -11,13 +11,14 @@ namespace rlpc {
 struct SingleMesh;
 struct MeshLimit;
 
-// Triangles that were one face of a file: a fan from its first corner when they are read.
+// Triangles that were one face of a file; when read, a fan from its first corner.
 struct MeshPolygon {
   std::uint64_t first_triangle = 0;
   std::uint32_t num_triangles = 0;  // 2 or more
 };
 
-// The place of a corner of a polygon among the corners of its fan, three for each triangle.
+// Returns the place of a corner of a polygon among the corners of its fan, three for each
+// triangle.
 constexpr std::uint64_t place_in_fan(std::uint64_t corner) {
   return corner < 2 ? corner : 3 * (corner - 2) + 2;
 }
@@ -31,7 +32,7 @@ class PolygonCuts {
     return cuts_.capacity() * sizeof(Cut) + places_.capacity() * sizeof(places_[0]);
   }
 
-  // The triangles of a polygon, by corner.
+  // Adds the triangles of a polygon, by corner.
   void add(const MeshPolygon& polygon, const std::vector<std::uint32_t>& corners);
 
   void apply(std::vector<Triangle>& triangles) const;
@@ -44,15 +45,16 @@ class PolygonCuts {
   struct Cut {
     std::uint64_t first_corner = 0;  // 3 * triangle
     std::uint64_t first_place = 0;   // in places_
-    std::uint64_t count = 0;         // of corners, and of places
+    std::uint64_t count = 0;         // number of corners, and of places
   };
   std::vector<Cut> cuts_;
-  std::vector<std::uint32_t> places_;  // from first_corner: where an element comes from
+  std::vector<std::uint32_t> places_;  // source of an element, relative to first_corner
 };
 
 // Finds the polygons of a mesh whose fans, at the positions of this mesh, fold or leave them,
 // and replaces their triangles; lists of corners are left to the caller. The mesh must be
-// complete but for attributes. Nothing is done if the limit says so. False: too much memory.
+// complete except for attributes. Does nothing unless the limit has cuts_polygons. False: too
+// much memory.
 bool cut_polygons(SingleMesh& mesh, const MeshLimit& limit);
 
 }  // namespace rlpc

@@ -10,7 +10,7 @@
 namespace rlpc {
 
 struct SourceAttribute {
-  // kIntegers: `values` are whole numbers, 0 to 2^16 - 1; normalised ones if max_value is set.
+  // kIntegers: `values` are whole numbers, 0 to 2^16 - 1, normalised if max_value is set.
   // kNormals: unit vectors of three components.
   enum class Kind : std::uint8_t { kNumbers, kIntegers, kNormals };
 
@@ -18,27 +18,27 @@ struct SourceAttribute {
   AttributeDomain domain = AttributeDomain::kCorner;
   Kind kind = Kind::kNumbers;
   std::uint32_t num_components = 1;  // 1 to 4
-  // Of normalised integers: the one that stands for 1, 2^n - 1; otherwise 0.
+  // The number that means 1 in normalised integers, 2^n - 1; otherwise 0.
   std::uint32_t max_value = 0;
   std::vector<float> values{};  // [value][component], all finite
-  // Of corners: the index of the value of each, 3 per triangle. Empty: vertices and triangles
-  // have their own values, one each.
+  // Index of the value of each corner, 3 per triangle. Empty: vertices or triangles have one
+  // value each.
   std::vector<std::uint32_t> value_of_corner{};
 
   std::size_t num_values() const { return values.size() / num_components; }
 };
 
-// What materials do with a set of texture coordinates.
+// Use of a set of texture coordinates by materials.
 struct UvUse {
-  // Along the unit of the coordinates, of the longer side of the largest image that they
-  // address. 0: of none; infinity: of one of an unknown size, as of other types than PNG and
+  // Texels per unit of the coordinates, along the longer side of the largest image that they
+  // address. 0: no image; infinity: an image of unknown size, as of other types than PNG and
   // JPEG.
   double texels = 0.0;
-  // Images along that unit, by KHR_texture_transform; at least 1.
+  // Repetitions of the image along that unit, by KHR_texture_transform; at least 1.
   double scale = 1.0;
 };
 
-// Normals of a frame, as first_normals below.
+// Normals of a frame, like first_normals below.
 struct PosedNormals {
   std::uint32_t frame = 0;
   std::vector<float> normals;
@@ -46,15 +46,16 @@ struct PosedNormals {
 
 struct SourceAttributes {
   std::vector<SourceAttribute> sets;
-  // The shape to which `normal` belongs, if that is not the first frame: positions, and for
-  // each corner the index of its one.
+  // Positions of the shape that `normal` belongs to, if that is not the first frame, and for
+  // each corner the index of its position.
   std::vector<float> rest_xyz{};
   std::vector<std::uint32_t> rest_of_corner{};
-  // [value of normal][3], those of the first frame, of length 1 or zero, if they are not those
-  // of the values and the input says what moves them; otherwise empty.
+  // [value of normal][3]: normals of the first frame, of length 1 or zero, if they differ from
+  // the values and the input says what moves them; otherwise empty.
   std::vector<float> first_normals{};
-  // The same of some later frames, ascending, in which the ways to code normals are compared:
-  // each part of the mesh is there in the first or in one of these, if it is in any frame.
+  // Normals of some later frames, ascending, in which the ways to code normals are compared:
+  // each part of the mesh that is visible in any frame is visible in the first or in one of
+  // these.
   std::vector<PosedNormals> later_normals{};
 
   std::uint64_t memory_bytes() const {
@@ -69,9 +70,9 @@ struct SourceAttributes {
   }
 };
 
-// What the numbers of `material` and `part` stand for, where the input says so.
+// Meaning of the numbers of `material` and `part`, as far as the input states it.
 struct SourceMaterials {
-  std::vector<std::string> names{};  // [value of `material`]; without the last: no material
+  std::vector<std::string> names{};       // [value of `material`]; a value beyond: no material
   std::vector<std::string> part_names{};  // [value of `part`]
   std::string mtl{};                      // contents of the .mtl files
   std::vector<std::string> textures{};    // image files, as the input names them

@@ -26,13 +26,14 @@ std::uint32_t u16_be(std::string_view bytes, std::size_t at) {
 }
 
 double longer_side_of_png(std::string_view image) {
-  constexpr std::size_t kWidth = 16;  // of the IHDR chunk, which comes first
+  constexpr std::size_t kWidth = 16;  // offset in the IHDR chunk, which comes first
   constexpr std::size_t kHeight = 20;
   if (image.size() < kHeight + 4) return kUnknown;
   return std::max(load_u32_be(image, kWidth), load_u32_be(image, kHeight));
 }
 
-// The first frame header: marker, length, precision, height, width.
+// Returns the longer side from the first frame header: marker, length, precision, height,
+// width.
 double longer_side_of_jpeg(std::string_view image) {
   std::size_t at = 2;
   while (at + 9 <= image.size() && image[at] == '\xFF') {
@@ -52,7 +53,7 @@ double longer_side(std::string_view image) {
   return type == "image/jpeg" ? longer_side_of_jpeg(image) : kUnknown;
 }
 
-// The element of a list that a member of an object names; null: there is none.
+// Returns the element of a list that a member of an object names; null: there is none.
 const Json& element(const Json& root, const char* list, const Json& object, const char* name) {
   static const Json kNone;
   if (!root.contains(list) || !root[list].is_array()) return kNone;
@@ -64,7 +65,8 @@ class TexelFinder {
  public:
   TexelFinder(const Json& root, std::string_view binary) : root_(root), binary_(binary) {}
 
-  // Members whose names end in "Texture" say which texture, and which set addresses it.
+  // Finds members whose names end in "Texture": they name a texture and the set that addresses
+  // it.
   void find(const Json& value) {
     if (!value.is_structured()) return;
     for (const auto& [name, member] : value.items()) {

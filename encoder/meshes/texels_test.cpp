@@ -27,7 +27,7 @@ std::string png(std::uint32_t width, std::uint32_t height) {
          big_endian(height, 4) + std::string(5, '\0');
 }
 
-// With an APP0 segment and a Huffman table before the frame header.
+// Returns a JPEG file with an APP0 segment and a Huffman table before the frame header.
 std::string jpeg(std::uint32_t width, std::uint32_t height) {
   return "\xFF\xD8\xFF\xE0" + big_endian(6, 2) + "JFIF" + "\xFF\xC4" + big_endian(4, 2) + "ab" +
          "\xFF\xC2" + big_endian(11, 2) + "\x08" + big_endian(height, 2) +

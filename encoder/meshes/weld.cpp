@@ -93,7 +93,7 @@ class WeldedSource : public FrameSource {
   std::vector<double> exact_;
 };
 
-// Removes triangles, and what belongs to them.
+// Removes triangles and their attributes.
 void keep_triangles(const std::vector<bool>& is_kept, FrameSource::Shape& shape) {
   const auto keep = [&](auto& items, std::size_t per_triangle) {
     std::size_t end = 0;

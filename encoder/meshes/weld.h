@@ -1,4 +1,4 @@
-// Merges vertices that coincide in every frame, as many files duplicate them along seams of
+// Merges vertices that coincide in every frame: many files duplicate vertices along seams of
 // normals and textures.
 #pragma once
 
@@ -9,7 +9,7 @@
 namespace rlpc {
 
 // Reads all frames. Each group of coinciding vertices becomes one vertex, in the place of its
-// first. Drops degenerate triangles. Errors: those of the source.
+// first. Drops degenerate triangles. Errors: errors of the source.
 InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> source);
 
 // Drops triangles with fewer than three distinct corners, and adds a note with their number.

@@ -33,7 +33,7 @@ class FramesInMemory : public FrameSource {
   Frames frames_;
 };
 
-// Vertices on the x axis.
+// Returns vertices on the x axis.
 std::vector<float> on_axis(const std::vector<float>& x) {
   std::vector<float> xyz;
   for (const float value : x) xyz.insert(xyz.end(), {value, 0, 0});

@@ -32,7 +32,7 @@ class GltfBuilder {
                                  {"type", type}});
     return json["accessors"].size() - 1;
   }
-  // The same for small integers that represent -1 to 1, or 0 to 1.
+  // Does the same for small integers that represent -1 to 1, or 0 to 1.
   template <class T>
   std::size_t add_normalized(const char* type, const std::vector<T>& values) {
     const std::size_t accessor = add(type, values);
@@ -49,7 +49,7 @@ class GltfBuilder {
     return json["bufferViews"].size() - 1;
   }
 
-  // Each returns the index of what it adds.
+  // Add an element and return its index.
   std::size_t add_mesh(const nlohmann::json& primitive) {
     return push("meshes", {{"primitives", {primitive}}});
   }
@@ -76,7 +76,7 @@ class GltfBuilder {
     const std::string data = padded(bytes, '\0');
     return glb_head(json_text(with_buffer()), data.size()) + data;
   }
-  // The document with its buffer in a separate file.
+  // Returns the document with its buffer in a separate file.
   std::string gltf(const std::string& uri) const {
     nlohmann::json whole = with_buffer();
     whole["buffers"][0]["uri"] = uri;

@@ -55,7 +55,7 @@ class GltfFilesTest : public testing::Test {
     for (std::size_t i = 0; i < got.size(); ++i) EXPECT_NEAR(got[i], want[i], 1e-6) << i;
   }
 
-  // The error of opening, otherwise that of the first bad frame, otherwise "".
+  // Returns the error of opening, otherwise that of the first bad frame, otherwise "".
   static std::string error_of_file(const std::string& path,
                                    const std::vector<std::string>& animations = {},
                                    const GltfLimits& limits = {}) {
@@ -83,7 +83,7 @@ class GltfFilesTest : public testing::Test {
 // Corners of the triangle that most tests animate.
 inline const std::vector<float> kCorners{0, 0, 0, 1, 0, 0, 0, 1, 0};
 
-// One triangle without indices, as the mesh of the only root, node 0.
+// Builds one triangle without indices, as the mesh of the only root, node 0.
 inline GltfBuilder one_triangle() {
   GltfBuilder builder;
   const std::size_t positions = builder.add("VEC3", kCorners);
@@ -91,7 +91,7 @@ inline GltfBuilder one_triangle() {
   return builder;
 }
 
-// The same, moved along x by 1 in each of two seconds: animation 0, "Move".
+// Builds the same triangle, moved along x by 1 in each of two seconds: animation 0, "Move".
 inline GltfBuilder moving_triangle() {
   GltfBuilder builder = one_triangle();
   builder.push("animations", {{"name", "Move"}});

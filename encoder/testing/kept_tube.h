@@ -19,7 +19,7 @@ inline constexpr double kTubeStep = 16.0;  // quantiser step, grid units
 // Moves a point in frame f.
 using Move = std::function<Point(const Point&, double f)>;
 
-// The second half bends relative to the first, and all swells.
+// Bends the second half relative to the first, and swells the whole.
 inline Point bent(const Point& p, double f) {
   const double bend = 0.5 * std::sin(0.4 * f) * std::tanh((p[0] - 12000.0) / 3000.0);
   const double x = p[0] - 12000.0;
@@ -33,7 +33,7 @@ class KeptTube {
   static constexpr std::uint32_t kRings = 40;
   static constexpr std::uint32_t kSides = 10;
   static constexpr std::uint32_t kVertices = kRings * kSides;
-  static constexpr std::uint32_t kFrames = 32;  // of the earlier span
+  static constexpr std::uint32_t kFrames = 32;  // frames of the earlier span
 
   KeptTube()
       : triangles_(tube_triangles(kRings, kSides)),
@@ -65,7 +65,7 @@ class KeptTube {
     }
     return list;
   }
-  // With a rig of its own.
+  // Encodes a span with a rig of its own.
   EncodedSpan encode_alone(const SpanFrames& of) const {
     return SkinnedSpanCoder(context, of).encode(kTubeStep, kTubeStep);
   }

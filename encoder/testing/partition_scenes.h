@@ -20,7 +20,7 @@ struct PartitionScene {
 
   std::uint32_t num_vertices() const { return static_cast<std::uint32_t>(points.size()); }
 
-  // Frames in which vertex v is at place(f, v).
+  // Returns frames in which vertex v is at place(f, v).
   template <typename Place>
   SpanFrames frames(std::uint32_t num_frames, const Place& place) const {
     SpanFrames frames{num_vertices(), num_frames, {}};
@@ -60,7 +60,7 @@ inline std::vector<std::uint32_t> part_sizes(const Partition& partition) {
   return sizes;
 }
 
-// The parts of some vertices.
+// Returns the parts of some vertices.
 inline std::set<std::uint16_t> parts_of(std::span<const std::uint16_t> partition) {
   return {partition.begin(), partition.end()};
 }

@@ -16,7 +16,7 @@ class RandomPoints {
     const double y = value();
     return {x, y, value()};
   }
-  // A motion within about `size`, in radians and units, of the identity.
+  // Returns a motion within about `size`, in radians and units, of the identity.
   Motion motion(double size) {
     Motion m;
     const Vec3d turn = 0.5 * size * point();

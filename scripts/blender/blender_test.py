@@ -18,8 +18,8 @@ import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
 TESTED_VERSION = "3.4"
-FIRST_FRAME = 11  # of the scenes of example.py
-ROUNDING = 1e-5   # of floats, and of six decimals
+FIRST_FRAME = 11  # first frame of the scenes of example.py
+ROUNDING = 1e-5   # floats, and six decimals
 
 
 class Programs:
@@ -129,7 +129,7 @@ class Blender(unittest.TestCase):
                                    lambda text: text.replace("PC2", "MDD").replace("pc2", "mdd"))
         self.check(truth, self.positions("empty.blend", from_mdd), largest)
 
-        # Without --axes, the commands do what the page says, too.
+        # The commands do what the page says, also without --axes.
         z_up = self.shell("MDD", lambda text: text.replace(" --axes x,z,-y", ""))
         self.assertIn("--axes x,z,-y turns it", z_up)
         self.shell("The original object")

@@ -33,7 +33,7 @@ def add_tube():
              for r in range(RINGS - 1) for s in range(SIDES)]
     mesh = bpy.data.meshes.new("Worm")
     mesh.from_pydata(vertices, [], faces)
-    layer = mesh.uv_layers.new()  # with a seam, where glTF has vertices twice
+    layer = mesh.uv_layers.new()  # has a seam, where glTF has vertices twice
     for polygon in mesh.polygons:
         r, s = divmod(polygon.index, SIDES)
         for loop, (du, dv) in zip(polygon.loop_indices, ((0, 0), (1, 0), (1, 1), (0, 1))):

@@ -61,7 +61,7 @@ class Spec:
         self.rules = collections.defaultdict(list)
         self.required = {}
         self.elements = {}
-        self.readers = collections.defaultdict(set)  # of elements: functions of the blocks
+        self.readers = collections.defaultdict(set)  # [element]: functions of the blocks
         self.complaints = []
         for path in self.files:
             self._read(path, path.relative_to(root))

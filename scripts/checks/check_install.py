@@ -172,7 +172,7 @@ def with_pkg_config(args, prefix, work):
         found = run("pkg-config", *(["--static"] if static else []), "--cflags", "--libs", module,
                     stdout=subprocess.PIPE, text=True, env=environment).stdout.split()
         folder = next(word[2:] for word in found if word.startswith("-L"))
-        if static:  # as the shared library is there as well
+        if static:  # the shared library is there too
             found = [f"{folder}/lib{module}.a" if word == f"-l{module}" else word
                      for word in found]
         compiler = args.cc if source.endswith(".c") else args.cxx

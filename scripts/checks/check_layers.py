@@ -34,7 +34,7 @@ _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include\b[ \t]*(.*)$", re.MULTILINE)
 
 
 def public_headers(root):
-    """What scripts/cmake/install.cmake installs."""
+    """Headers that scripts/cmake/install.cmake installs."""
     text = (root / INSTALLED).read_text(encoding="utf-8")
     return sorted(set(re.findall(r"\b(?:common|decoder|encoder)/[\w/]+\.h\b", text)))
 
@@ -152,7 +152,7 @@ def imports(text):
 
 
 def check_python(root, folder, others):
-    """Only the standard library, and modules beside the file's own or in other folders."""
+    """Only the standard library, and modules in the file's own folder or in other folders."""
     base = root / folder
     local = {base.name} | {path.stem for path in base.rglob("*.py")}
     local |= {path.stem for other in others for path in (root / other).rglob("*.py")}

@@ -1,4 +1,4 @@
-"""What the checks share: C++ source text, split into code, comments and literals just well enough
+"""Shared by the checks: C++ source text, split into code, comments and literals just well enough
 for them; their reports and command lines."""
 
 import argparse

@@ -1,4 +1,4 @@
-"""Which folder may include what: the source layout of CONTRIBUTING.md, as a table.
+"""Includes allowed between folders: the source layout of CONTRIBUTING.md, as a table.
 
 A room is a folder. It may include its own files, files of the folders named (not of folders in
 them), and single files; other libraries only where LIBRARIES says so.
@@ -49,7 +49,7 @@ ROOMS = {
     # Positions in an order of their own (8.18): rest positions, first frames.
     "common/codec/rest": _MESH,
     "common/codec/syntax": _MESH,
-    # What the kinds of GOF have in common: an access unit holds one of any.
+    # Shared by the kinds of GOF: an access unit holds one of any.
     "common/codec/kinds": _GOFS,
     **dict.fromkeys(_of_kinds(_KIND), _SHAPE | {"common/codec/syntax"}),
     **dict.fromkeys(_of_kinds(_KIND + "/recon"), _GOFS | _RECON),
@@ -67,14 +67,14 @@ ROOMS = {
     "common/json": {"common", "common/memory"},
     # Command lines of programs.
     "common/cli": {"common/files"},
-    # What encoders verify their streams by: declared here, implemented by decoder/verify and
+    # Interface for verification by encoders: declared here, implemented by decoder/verify and
     # conformance/rlpcval, joined when programs are linked, so that neither side includes the
     # other.
     "common/verify": {"common"},
     "common/c_api": {"common", "common/memory"},
     "common/testing": _GOFS,
 
-    # What callers choose.
+    # Settings of callers.
     "decoder/codec": _BITS | {"common/codec/syntax"},
     # Bits to structures; no reconstruction, no files.
     "decoder/codec/parse": _GOFS | {"common/codec/kinds", "decoder/codec/slice_cut.h"},
@@ -130,7 +130,7 @@ ROOMS = {
     # Floating point, decisions, structures to bits.
     "encoder": {"common/codec/mesh", "encoder/codec", "encoder/codec/sequence", "encoder/meshes",
                 "encoder/meshes/open"},
-    # What callers choose, and are told.
+    # Settings of callers, and reports to them.
     "encoder/codec": {"common/codec/kinds/inter", "common/codec/kinds/skinned",
                       "common/codec/mesh", "common/codec/syntax", "encoder/codec/attributes",
                       "encoder/codec/metrics", "encoder/meshes"},
@@ -243,7 +243,7 @@ def layer_of(folder):
 
 
 def libraries_within(layer):
-    """Of all folders of the layer."""
+    """Rooms of all folders of the layer."""
     return set().union(*(names for folder, names in LIBRARIES.items() if layer_of(folder) == layer))
 
 

@@ -299,7 +299,7 @@ class Rules(TreeTest):
 
 
 class Stability(TreeTest):
-    DIGEST = "2c26b46b68ffc68ff99b453c1d30413413422d706483bfa0f98a5e886266e7ae"  # of "foo"
+    DIGEST = "2c26b46b68ffc68ff99b453c1d30413413422d706483bfa0f98a5e886266e7ae"  # SHA-256 of "foo"
     RELEASED = {"spec/versions.md": "| 1.0 | Baseline | released 2026-11-21 |\n",
                 "streams/v1.0/SHA256SUMS": DIGEST + "  accept/A/A-0001a.rlpc\n",
                 "streams/v1.0/SHA256SUMS.sidecars": DIGEST + "  accept/A/A-0001a.json\n",

@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 TOOLS = ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp", "rlpcval")
-COLUMN = 26  # of descriptions in the help
+COLUMN = 26  # column of descriptions in the help
 
 
 def escaped(text):

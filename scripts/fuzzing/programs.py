@@ -47,7 +47,7 @@ ENDINGS = ["rlpd", "obj", "ply", "pc2", "mdd", "glb"]
 
 
 class Wrong(Exception):
-    """What a program did that it must not do; the text is for the user."""
+    """Misbehaviour of a program; the text is for the user."""
 
 
 # Inputs ---------------------------------------------------------------------------------------

@@ -287,7 +287,7 @@ def payload_seeds(found, counts):
 
 
 def attributes_seeds(found, _):
-    """With a grid of 4 by 3, the mesh of several streams of the suite."""
+    """Seeds with a grid of 4 by 3, the mesh of several streams of the suite."""
     for code, payload in found:
         if code == ATTRIBUTES:
             yield bytes([3, 2, 0]) + payload

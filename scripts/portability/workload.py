@@ -1,4 +1,4 @@
-"""What every build runs: encodings, decodings, and the released streams."""
+"""Workload of every build: encodings, decodings, and the released streams."""
 
 import concurrent.futures
 import hashlib

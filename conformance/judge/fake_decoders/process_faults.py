@@ -26,7 +26,7 @@ def dies_after_good_output(request):
 
 
 def hangs(request):
-    """With a child that would outlive it, and a note of the child's id."""
+    """Starts a child that would outlive it, and notes the child's id."""
     child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(300)"])
     (request.kept_folder() / "child").write_text(str(child.pid))
     time.sleep(300)

@@ -13,7 +13,7 @@ namespace {
 
 // Below this share of the energy, vectors are noise of the analysis.
 constexpr double kLeastEnergy = 1e-12;
-// Of the exponents of a scale: 2^-40 to 2^4, to within 2^-20.
+// Halvings of the exponent of a scale: 2^-40 to 2^4, to within 2^-20.
 constexpr int kHalvings = 26;
 
 // Values of one axis.
@@ -21,7 +21,7 @@ std::size_t axis_length(const std::vector<double>& vector) {
   return std::max(vector.size() / 3, std::size_t{1});
 }
 
-// The value that is predicted from those before `v`, of which at least as many are there.
+// Returns the prediction from the values before `v`, of which there are enough.
 double predicted(const BasisPredictor& predictor, const double* v) {
   double sum = predictor.offset;
   for (std::size_t k = 0; k < predictor.weights.size(); ++k) {
@@ -35,7 +35,7 @@ BasisPredictor fitted(std::span<const std::vector<double>> vectors, std::size_t 
   for (const std::vector<double>& vector : vectors) {
     for (std::size_t j = 0; j < vector.size(); ++j) {
       if (j % axis_length(vector) < kMostPredicting) continue;
-      std::array<double, kMostPredicting + 1> known{};  // the offset last
+      std::array<double, kMostPredicting + 1> known{};  // the last one: the offset
       for (std::size_t k = 0; k < order; ++k) known[k] = vector[j - 1 - k];
       known[order] = 1.0;
       for (std::size_t a = 0; a <= order; ++a) {

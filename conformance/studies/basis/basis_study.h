@@ -26,8 +26,8 @@ struct TrajectoryBasis {
 
 InputResult<TrajectoryBasis> analyse_trajectories(FrameSource& source, std::size_t max_vectors);
 
-// Steps of the vectors: all the same; inverse to `sums`, (19); or inverse to the eigenvalues,
-// as in Heu et al. 2006.
+// Steps of the vectors: all the same; inverse to `sums`, (19); or inverse to the eigenvalues
+// (Heu et al. 2006).
 enum class StepRule : std::uint8_t { kUniform, kCobra, kEigenvalue };
 inline constexpr std::array kStepRules{StepRule::kUniform, StepRule::kCobra,
                                        StepRule::kEigenvalue};
@@ -40,21 +40,21 @@ std::vector<double> relative_steps(const TrajectoryBasis& basis, StepRule rule,
 // Predicts a value from those before it on its axis.
 struct BasisPredictor {
   std::string name;
-  std::vector<double> weights;  // of the last value, the one before, ...
+  std::vector<double> weights;  // for the last value, the one before, ...
   double offset = 0.0;
 };
 
-inline constexpr std::size_t kMostPredicting = 4;  // values
+inline constexpr std::size_t kMostPredicting = 4;  // number of values
 
 // No prediction; LPC1 to LPC4, fitted by least squares; Cob1 to Cob4, (11), (12), (14), (15).
 std::vector<BasisPredictor> basis_predictors(std::span<const std::vector<double>> vectors);
 
-// The sum of squares of what the predictor misses, where there are kMostPredicting values
-// before.
+// Returns the sum of squared prediction errors of values with kMostPredicting values before
+// them.
 double missed_squares(std::span<const std::vector<double>> vectors,
                       const BasisPredictor& predictor);
 
-// What Algorithm 1 makes of vectors.
+// Result of Algorithm 1 for vectors.
 struct QuantisedBasis {
   double entropy = 0.0;       // bits per value, first values included
   std::vector<double> error;  // [vector]: squared
@@ -62,10 +62,10 @@ struct QuantisedBasis {
 QuantisedBasis quantise(std::span<const std::vector<double>> vectors,
                         std::span<const double> steps, const BasisPredictor& predictor);
 
-// The KG error in per cent if nothing but the basis has errors.
+// Returns the KG error in per cent if only the basis has errors.
 double kg_error(const TrajectoryBasis& basis, std::span<const double> errors);
 
-// Steps that are `relative` to each other and lead to that error.
+// Returns steps in the proportions of `relative` that lead to a KG error of `kg`.
 std::vector<double> steps_for(const TrajectoryBasis& basis, std::span<const double> relative,
                               const BasisPredictor& predictor, double kg);
 

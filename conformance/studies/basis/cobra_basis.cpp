@@ -19,7 +19,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kShown = 10;  // vectors in the report
+constexpr std::size_t kShown = 10;  // number of vectors in the report
 
 struct Options {
   InputOptions input;
@@ -29,7 +29,7 @@ struct Options {
   std::vector<double> rates{1, 0.5, 0.2, 0.1, 0.05, 0.02};
 };
 
-// Of each rule: errors with one step tripled, and the rate at several errors.
+// Reports, for each rule, errors with one step tripled, and the rate at several errors.
 nlohmann::json rules(const TrajectoryBasis& basis, const Options& options) {
   const std::size_t count = std::min(options.tripled, basis.vectors.size());
   const auto vectors = std::span(basis.vectors).first(count);
@@ -55,7 +55,7 @@ nlohmann::json rules(const TrajectoryBasis& basis, const Options& options) {
   return list;
 }
 
-// Of each number of vectors, rule and predictor: what is missed, and the entropy.
+// Reports, for each number of vectors, rule and predictor, prediction errors and entropy.
 nlohmann::json predictors(const TrajectoryBasis& basis, const Options& options) {
   nlohmann::json list = nlohmann::json::array();
   for (const std::size_t count : options.counts) {

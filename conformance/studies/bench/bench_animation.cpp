@@ -15,7 +15,7 @@ namespace {
 
 const std::filesystem::path kSource = RLPC_SOURCE_DIR;
 
-// If it is there.
+// Adds an animation if its files exist.
 void add(std::vector<BenchAnimation>& to, const std::filesystem::path& folder,
          const char* name) {
   const std::filesystem::path stem = folder / name;

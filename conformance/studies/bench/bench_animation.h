@@ -18,10 +18,11 @@ struct BenchAnimation {
   std::string points;
 };
 
-// The bundled ones and, if present beside the project, two from the literature.
+// Returns the bundled animations and, if present next to the project, two from the literature.
 std::vector<BenchAnimation> animations();
 
-// Those with long GOFs to wait for: some of them, and if present one of a game character.
+// Returns animations with long GOFs to wait for: some bundled ones, and if present one of a
+// game character.
 std::vector<BenchAnimation> latency_animations();
 
 // Prints the message and ends the program.

@@ -39,7 +39,7 @@ std::vector<std::uint32_t> random(Decoder& decoder) {
   return frames;
 }
 
-// Between the first GOF and the last, a frame on at a time.
+// Alternates between the first GOF and the last, one frame further each time.
 std::vector<std::uint32_t> alternating(Decoder& decoder) {
   const auto gofs = decoder.gofs();
   if (!gofs) stop("the encoded stream has no GOFs");

@@ -1,4 +1,4 @@
-// How long a player waits for single frames.
+// Benchmarks of the time that a player waits for single frames.
 #pragma once
 
 #include "conformance/studies/bench/bench_animation.h"

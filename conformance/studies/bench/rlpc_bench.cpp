@@ -1,12 +1,12 @@
 // Speed and peak memory of encoding and decoding, in vertex-frames per second on one thread;
-// of the High profile also with two threads and fewer adaptive factors, and how long single
-// frames take, in several orders.
+// for the High profile also with two threads and fewer adaptive factors, and the time of single
+// frames, in several orders.
 //
 // It also reports multiply-adds per second: for decoding, and for the sums of 8.5.3 with each
 // loop that the machine can run, the plain loop first.
 //
-// Animations: the bundled ones and, if present beside the project, two from the
-// literature. Peak memory is measured on the programs doing the same work.
+// Animations: the bundled ones and, if present next to the project, two from the literature.
+// Peak memory is measured on the programs doing the same work.
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
@@ -82,7 +82,7 @@ class Launcher {
     answers_ = answers[0];
   }
 
-  // Peak memory of a shell command, in MB.
+  // Returns the peak memory of a shell command, in MB.
   double peak_megabytes(const std::string& command) const {
     const std::string line = std::string(RLPC_TOOL_DIR) + "/" + command;
     std::array<char, kMaxCommand> request{};

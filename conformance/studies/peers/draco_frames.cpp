@@ -62,8 +62,8 @@ std::vector<float> positions_of(const draco::Mesh& mesh) {
   return xyz;
 }
 
-// The index of every decoded vertex, which is coded as its x. The order follows from the
-// triangles.
+// Returns the index of every decoded vertex, which is coded as its x. The order follows from
+// the triangles.
 std::vector<std::uint32_t> decoded_order(const Animation& animation, int method,
                                          std::size_t& num_triangles) {
   std::vector<float> xyz(3 * std::size_t{animation.num_vertices});

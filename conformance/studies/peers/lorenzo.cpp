@@ -8,7 +8,7 @@ namespace {
 
 using Neighbours = std::vector<std::vector<std::uint32_t>>;
 
-// For each vertex the neighbours with a smaller index, once per triangle that they share.
+// Returns, for each vertex, the neighbours with a smaller index, once per shared triangle.
 Neighbours earlier_neighbours(const QuantisedAnimation& a) {
   Neighbours out(a.num_vertices);
   for (const Triangle& t : a.triangles) {
@@ -21,8 +21,8 @@ Neighbours earlier_neighbours(const QuantisedAnimation& a) {
   return out;
 }
 
-// The change of value i in frame f: from the previous frame (order 1), or from the linear
-// extrapolation of the two previous frames (order 2).
+// Returns the change of value i in frame f: from the previous frame (order 1), or from the
+// linear extrapolation of the two previous frames (order 2).
 int change(const QuantisedAnimation& a, int order, std::size_t f, std::size_t i) {
   const int here = a.frames[f][i];
   if (f == 0) return here;
@@ -31,7 +31,7 @@ int change(const QuantisedAnimation& a, int order, std::size_t f, std::size_t i)
   return here - 2 * before + a.frames[f - 2][i];
 }
 
-// change(), predicted as the mean of the neighbours.
+// Predicts change() as the mean of the neighbours.
 int predict(const QuantisedAnimation& a, const std::vector<std::uint32_t>& neighbours,
             int order, std::size_t f, std::size_t axis) {
   if (neighbours.empty()) return 0;
@@ -41,7 +41,7 @@ int predict(const QuantisedAnimation& a, const std::vector<std::uint32_t>& neigh
   return sum / static_cast<int>(neighbours.size());
 }
 
-// All residuals modulo 2^16, frame by frame and axis by axis.
+// Returns all residuals modulo 2^16, frame by frame and axis by axis.
 std::vector<std::int16_t> residuals_of(const QuantisedAnimation& a,
                                        const Neighbours& neighbours, int order) {
   std::vector<std::int16_t> out;
@@ -62,7 +62,7 @@ std::uint64_t magnitude(const std::vector<std::int16_t>& residuals) {
   return sum;
 }
 
-// Signs in the lowest bit, then all low bytes before all high bytes.
+// Moves signs to the lowest bit, and all low bytes before all high bytes.
 std::string byte_planes(const std::vector<std::int16_t>& residuals) {
   std::string out(2 * residuals.size(), '\0');
   for (std::size_t i = 0; i < residuals.size(); ++i) {

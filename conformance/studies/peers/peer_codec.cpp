@@ -34,7 +34,7 @@ struct Options {
   std::string output;
   std::string order_map;
   std::string frame_rate;
-  InputOptions source;  // of convert
+  InputOptions source;  // convert only
   int bits = 12;
 };
 
@@ -79,7 +79,7 @@ void write_file(const std::string& path, std::string_view bytes) {
   if (!out) throw std::runtime_error(path + ": cannot be written");
 }
 
-// A point cache, and the triangles in an OBJ file beside it.
+// Writes a point cache, and the triangles in an OBJ file next to it.
 void write_animation(const std::string& path, const Animation& animation) {
   std::ostringstream obj;
   obj.precision(9);
@@ -175,7 +175,7 @@ void decode(const Options& o) {
                   o.order_map.empty() ? decoded : reordered(decoded, read_order(o.order_map)));
 }
 
-// The vertex order that the decoder of `codec` gives.
+// Writes the vertex order that the decoder of `codec` outputs.
 void write_order(const Options& o) {
   const Animation animation = read_animation(o);
   std::vector<std::uint32_t> order(animation.num_vertices);
@@ -221,7 +221,7 @@ void add_decode(CLI::App& app, Options& o) {
   app.add_option("--order-map", o.order_map, "Restore the order of the input by this file")
       ->option_text("FILE")
       ->group(kMain);
-  add_output(app, o, "Point cache (.pc2) to write, with an OBJ file beside it");
+  add_output(app, o, "Point cache (.pc2) to write, with an OBJ file next to it");
 }
 
 void add_order(CLI::App& app, Options& o) {
@@ -248,7 +248,7 @@ void add_convert(CLI::App& app, Options& o) {
          "--no-weld", [&o] { o.source.weld = false; },
          "If the input is glTF: keep coincident vertices apart")
       ->group(kMain);
-  add_output(app, o, "Point cache (.pc2) to write, with an OBJ file beside it");
+  add_output(app, o, "Point cache (.pc2) to write, with an OBJ file next to it");
 }
 
 void list(const Options& /*o*/) {

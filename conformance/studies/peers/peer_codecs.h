@@ -53,8 +53,8 @@ Bytes write_zfp(const Animation& animation, int bits);
 Animation read_zfp(const Bytes& bytes);
 
 // A draco mesh for every frame, with the slowest setting: by Edgebreaker, or in sequence if the
-// mesh is one that Edgebreaker changes. draco gives the vertices in another order, and those
-// where fans meet several times: order[decoded vertex] is the index in `animation`.
+// mesh is one that Edgebreaker changes. draco reorders the vertices and repeats those where
+// fans meet: order[decoded vertex] is the index in `animation`.
 Bytes write_draco(const Animation& animation, int bits);
 Animation read_draco(const Bytes& bytes);
 std::vector<std::uint32_t> draco_order(const Animation& animation);

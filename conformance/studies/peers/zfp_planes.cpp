@@ -33,7 +33,7 @@ struct FreeField {
 };
 using Field = std::unique_ptr<zfp_field, FreeField>;
 
-// plane[f * num_vertices + v]
+// Describes plane[f * num_vertices + v].
 Field field_of(std::vector<float>& plane, std::size_t num_vertices) {
   return Field(
       zfp_field_2d(plane.data(), zfp_type_float, num_vertices, plane.size() / num_vertices));

@@ -11,7 +11,7 @@ namespace rlpc {
 namespace {
 
 constexpr double kDegrees = 57.29577951308232;
-constexpr float kVisible = 0.01F;  // fixed: of the largest area; smaller ones do not count
+constexpr float kVisible = 0.01F;  // fixed: part of the largest area; smaller ones do not count
 
 double degrees_between(const Vec3d& a, const Vec3d& b) {
   return kDegrees * angle_between(a, b);
@@ -33,7 +33,7 @@ ComparedNormals::ComparedNormals(const ComparedMesh& mesh,
   for_each(frames.size(), [&](std::size_t f) { measure(f); });
 }
 
-// Sets weights: of each sector, the areas of its triangles, relative to the largest.
+// Sets the weight of each sector: the areas of its triangles, relative to the largest.
 void ComparedNormals::measure_areas() {
   const std::uint32_t count = mesh_.sectors.count();
   for_each(frames_.size(), [&](std::size_t f) {

@@ -1,4 +1,5 @@
-// Normals of decoded frames beside those of the input: what each way to code them leaves.
+// Compares normals of decoded frames with those of the input: the error of each way to code
+// them.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@
 
 namespace rlpc {
 
-// What is the same in all frames.
+// Data that all frames share.
 struct ComparedMesh {
   std::span<const Triangle> triangles;
   std::uint32_t num_vertices = 0;
@@ -27,7 +28,7 @@ struct ComparedMesh {
   bool turns = true;  // unit vectors turn with the surface (F.8.5); false: they stay
 };
 
-// A frame: decoded positions, and the normals that the input has there.
+// Decoded positions of a frame, and the normals of the input.
 struct ComparedFrame {
   std::uint32_t frame = 0;
   std::span<const std::int32_t> positions;
@@ -37,28 +38,28 @@ struct ComparedFrame {
 class ComparedNormals {
  public:
   // frames: the first frame of the sequence, then others. They and what the mesh refers to must
-  // outlive it. Time: that of computing the normals of these frames twice; on several threads.
+  // outlive the object. Computes the normals of these frames twice, on several threads.
   ComparedNormals(const ComparedMesh& mesh, std::span<const ComparedFrame> frames);
 
-  // The unit vector of a sector that, in the first frame, comes nearest to the input in all
-  // frames; zero: there is none.
+  // Returns the unit vector of a sector in the first frame that comes nearest to the input in
+  // all frames; zero if there is none.
   Vec3d fitted(std::uint32_t x) const;
-  // The unit vector of the first frame with the smallest vector_error(), out of those that are
-  // right in one frame and the one nearest to all in squares. None: the sector is never seen.
-  // Where the surface turns otherwise than the normal in some frames, the others count.
+  // Returns the unit vector of the first frame with the smallest vector_error(), out of those
+  // that are right in one frame and the least-squares one. None: the sector is never seen.
+  // Frames in which the surface turns differently from the normal do not count.
   std::optional<Vec3d> best_vector(std::uint32_t x) const;
-  // Means over the frames, in degrees: of smoothing; of a unit vector of the first frame.
+  // Mean errors over the frames, in degrees: of smoothing; of a unit vector of the first frame.
   double smoothing_error(std::uint32_t x) const;
   double vector_error(std::uint32_t x, const Vec3d& stored) const;
-  // The sum of the weights of a sector in all frames.
+  // Returns the sum of the weights of a sector in all frames.
   double weight(std::uint32_t x) const;
   // Whether unit vectors of a sector can turn: there is a surface around it in the first frame.
   bool can_turn(std::uint32_t x) const { return can_turn_[x]; }
   // Whether a sector can be seen in the first frame.
   bool is_in_first(std::uint32_t x) const { return frames_[0].weights[x] > 0.0F; }
 
-  // What each frame has if the sectors have these normals. is_smooth: [sector]; stored: unit
-  // vectors of the others.
+  // Returns the error of each frame if the sectors have these normals. is_smooth: [sector];
+  // stored: unit vectors of the others.
   std::vector<NormalError> errors(const std::vector<bool>& is_smooth,
                                   std::span<const Vec3d> stored) const;
 

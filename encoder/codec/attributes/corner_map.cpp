@@ -7,7 +7,7 @@
 namespace rlpc {
 namespace {
 
-// The same triangle, beginning with its lowest corner: how far it was turned, and its vertices.
+// A triangle turned to begin with its lowest corner: the turn, and its vertices.
 struct Turned {
   std::uint32_t by = 0;
   Triangle triangle{};
@@ -22,7 +22,7 @@ Turned turned(const Triangle& t) {
   return best;
 }
 
-// Indices of triangles, sorted by their vertices, equal ones by index.
+// Returns indices of triangles, sorted by their vertices, equal ones by index.
 std::vector<std::uint32_t> sorted(const std::vector<Turned>& triangles) {
   std::vector<std::uint32_t> order(triangles.size());
   std::iota(order.begin(), order.end(), 0U);

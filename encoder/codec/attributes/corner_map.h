@@ -1,4 +1,4 @@
-// Finds the corners of the input again in the decoded triangles, which have another order.
+// Maps the corners of the decoded triangles, which have another order, to those of the input.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace rlpc {
 
-// [decoded corner], the corner of the input, both 3 * triangle + k. input: the triangles that
-// the connectivity was made from.
+// Returns [decoded corner]: the corner of the input, both 3 * triangle + k. input: the
+// triangles that the connectivity was made from.
 std::vector<std::uint32_t> map_corners(const ConnectivityCode& connectivity,
                                        std::span<const Triangle> input);
 

@@ -165,7 +165,7 @@ void AttributeEncoder::find_seams(Draft& draft) const {
     has_seams = true;
   }
   if (has_seams) return;
-  // Perhaps each vertex has one value.
+  // Check whether each vertex has one value.
   std::vector<std::uint32_t> corner_of(num_vertices_, kNoCorner);
   for (std::uint32_t c = 0; c < edge_mates_.size(); ++c) {
     std::uint32_t& first = corner_of[vertex_of_corner(geometry_.triangles(), c)];
@@ -211,7 +211,7 @@ CodedAttributeSet AttributeEncoder::code_with(const Draft& draft,
   set.residuals.assign(std::size_t{n} * draft.sectors.count(), 0);
   for (const std::uint32_t x : order.order) {
     const AttributeValue expected = predictor.predict(x);
-    AttributeValue value = expected;  // without a value of its own
+    AttributeValue value = expected;  // a sector without a value
     const std::uint32_t i = draft.value_of_sector[x];
     for (std::size_t c = 0; c < n && i != kNoSector; ++c) {
       value[c] = draft.quantised.values[std::size_t{i} * n + c];
@@ -255,7 +255,8 @@ CodedAttributeSet AttributeEncoder::code_values(const Draft& draft, AttributeRep
   return best_of(draft, predictions);
 }
 
-// The diagonals of a smoothing, as flags: those that are not likely in the first frame, or all.
+// Sets the diagonals of a smoothing as flags: those that are not likely in the first frame, or
+// all.
 void AttributeEncoder::set_diagonals(const Smoothing& smoothing, CodedAttributeSet& set) const {
   set.header.weight = smoothing.weight;
   std::vector<bool> unlikely(edge_mates_.size(), false);
@@ -309,7 +310,7 @@ CodedAttributeSet AttributeEncoder::code_normals(Draft draft, AttributeReport& r
   for (std::uint32_t x = 0; x < draft.sectors.count(); ++x) {
     draft.quantised.values.insert(draft.quantised.values.end(), plan.points[x].begin(),
                                   plan.points[x].end());
-    // What is predicted is what follows.
+    // Predicted normals are those that follow.
     draft.value_of_sector[x] = settings_.from_positions && plan.follows[x] ? kNoSector : x;
   }
   if (!settings_.from_positions) return best_of(draft, kWithoutPositions);

@@ -14,23 +14,23 @@
 
 namespace rlpc {
 
-// What became of one attribute.
+// Size and errors of one coded attribute.
 struct AttributeReport {
   std::string name;
   std::uint64_t values = 0;
   std::uint64_t bits = 0;      // in the stream
-  double largest_error = 0.0;  // of a component, in its units; of normals, degrees
-  double rms_error = 0.0;      // of normals, degrees
+  double largest_error = 0.0;  // of a component, in its units; normals: degrees
+  double rms_error = 0.0;      // normals only, degrees
   bool is_normal = false;
   bool is_smoothing = false;
-  // Of normals as decoders show them: in the first frame, and in others of which the input has
-  // normals.
+  // Errors of normals as decoders show them, in the first frame and in others for which the
+  // input has normals.
   std::vector<NormalError> normal_errors{};
-  std::uint64_t num_following = 0;  // of the values, normals that follow from positions
+  std::uint64_t num_following = 0;  // number of values that follow from positions (normals)
 };
 
 struct EncodedAttributes {
-  std::vector<std::uint8_t> payload;  // of the attribute unit
+  std::vector<std::uint8_t> payload;  // payload of the attribute unit
   std::vector<AttributeReport> sets;
 };
 
@@ -40,12 +40,12 @@ struct AttributeInput {
   std::span<const std::uint32_t> corner_map;  // map_corners()
   // Decoded positions of the first frame, in decoded order.
   std::span<const std::int32_t> first_frame;
-  // Those of SourceAttributes::later_normals that are known.
+  // Decoded frames of SourceAttributes::later_normals, as far as known.
   std::span<const DecodedFrame> later_frames{};
   bool is_animated = true;  // the sequence has several frames
 };
 
-// Each set is coded in the ways that its kind and the settings allow, and the smallest is kept.
+// Codes each set in the ways that its kind and the settings allow, and keeps the smallest.
 EncodedAttributes encode_attributes(const AttributeInput& input,
                                     const AttributeSettings& settings);
 

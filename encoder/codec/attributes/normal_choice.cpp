@@ -30,7 +30,7 @@ constexpr double kMuchBetter = 10.0;
 // their direction whatever the surface does
 constexpr double kBetterThanStill = 20.0;
 
-// Positions of the shape at rest, as integers, and triangles with their indices.
+// Positions of the rest shape, as integers, and triangles with their indices.
 struct RestShape {
   std::vector<Triangle> triangles;
   std::vector<std::int32_t> positions;
@@ -55,7 +55,7 @@ std::optional<RestShape> rest_shape(const NormalTask& task) {
   return shape;
 }
 
-// The normals of sectors, from those of values; zero: none.
+// Returns the normals of sectors from those of values; zero: none.
 std::vector<Vec3d> of_sectors(const NormalTask& task, std::span<const float> values) {
   std::vector<Vec3d> normals;
   normals.reserve(task.value_of_sector.size());
@@ -151,7 +151,8 @@ class NormalPlanner {
  private:
   std::uint32_t count() const { return task_.sectors.count(); }
 
-  // What is to be stored of a sector. in_first: the normal of the input in the first frame.
+  // Returns the vector to store for a sector. in_first: the normal of the input in the first
+  // frame.
   Vec3d vector_of(const ComparedNormals& compared, const Vec3d& in_first,
                   std::uint32_t x) const {
     if (is_exact_ && compared.is_in_first(x)) return in_first;
@@ -168,11 +169,11 @@ class NormalPlanner {
     return total;
   }
 
-  // Stores the normals that gain most, until all others together lose no more than kLost, and
-  // those that gain much each.
+  // Stores the normals that gain most, until all others together lose at most kLost, and every
+  // normal that gains much.
   std::vector<bool> follow_where_it_serves(const ComparedNormals& compared) const {
     std::vector<bool> follows(count(), true);
-    std::vector<std::pair<double, std::uint32_t>> gains;  // of squares
+    std::vector<std::pair<double, std::uint32_t>> gains;  // squared, and the sector
     double weights = 0.0;
     double lost = 0.0;
     for (std::uint32_t x = 0; x < count(); ++x) {
@@ -205,7 +206,7 @@ class NormalPlanner {
       return smooth <= std::max(kServes, still) ? all : none;
     }
     if (is_exact_) {
-      std::vector<bool> follows(count());  // of those that are not in the first frame
+      std::vector<bool> follows(count());  // set for sectors that are not in the first frame
       for (std::uint32_t x = 0; x < count(); ++x) {
         const bool must_be_exact = compared.is_in_first(x) || compared.weight(x) == 0.0;
         follows[x] = !must_be_exact && smooth_[x] <= vector_[x];

@@ -17,7 +17,7 @@ namespace rlpc {
 
 struct NormalTask {
   const SourceAttributes& source;
-  std::span<const float> values;  // of the set of normals
+  std::span<const float> values;  // values of the set of normals
   std::span<const Triangle> triangles;
   std::uint32_t num_vertices = 0;
   std::span<const std::uint32_t> corner_map;  // map_corners()
@@ -26,7 +26,7 @@ struct NormalTask {
   const Sectors& sectors;
   std::span<const std::uint32_t> value_of_sector;  // index of the value, or kNoSector
   std::span<const std::int32_t> first_frame;       // decoded positions
-  // Others for which the source has normals; perhaps none.
+  // Later frames for which the source has normals; may be empty.
   std::span<const DecodedFrame> later_frames;
   bool is_animated = true;  // the sequence has several frames
   std::uint32_t value_bits = 8;
@@ -40,9 +40,9 @@ struct NormalPlan {
   // [sector], whether its normal must not follow from positions, which would be clearly worse.
   // A point that is the predicted one would follow (F.8.5).
   std::vector<bool> must_turn;
-  // [sector], points of the octahedron; of those that follow, without meaning.
+  // [sector], points of the octahedron; without meaning for sectors that follow.
   std::vector<std::array<std::uint32_t, 2>> points;
-  std::vector<NormalError> errors;  // of the first frame and of later_frames
+  std::vector<NormalError> errors;  // in the first frame and in later_frames
   double rms_error = 0.0;           // RMS of all of them, degrees
 };
 

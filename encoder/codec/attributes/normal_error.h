@@ -18,7 +18,7 @@ struct NormalError {
   std::uint32_t frame = 0;
   double mean = 0.0;
   double rms = 0.0;
-  double largest = 0.0;  // of sectors with at least a hundredth of their largest area
+  double largest = 0.0;  // over sectors with at least a hundredth of their largest area
 };
 
 }  // namespace rlpc

@@ -52,8 +52,8 @@ void quantise_integers(const SourceAttribute& source, QuantisedAttribute& out) {
   if (source.max_value != 0) out.header.scale = ValueScale::kNormalised;
 }
 
-// On a grid with a step of a power of two: the finest of at most 16 bits, but not below the one
-// that was asked for.
+// Quantises on a grid with a step of a power of two: the finest of at most 16 bits, but not
+// finer than log2_step.
 void quantise_numbers(const SourceAttribute& source, int log2_step, QuantisedAttribute& out) {
   out.header.kind = ValueKind::kIntegers;
   out.header.scale = ValueScale::kGrid;
@@ -94,7 +94,7 @@ double widest_range(const SourceAttribute& source) {
   return widest;
 }
 
-// The step that gives the widest component so many bits.
+// Returns the step that gives the widest component so many bits.
 int log2_step_of_range(const SourceAttribute& source, int bits) {
   const double widest = widest_range(source);
   int log2_step = -126;
@@ -102,15 +102,14 @@ int log2_step_of_range(const SourceAttribute& source, int bits) {
   return log2_step;
 }
 
-// The bits are those of an image, also where a transform has it several times along the unit of
-// the coordinates. Coordinates that repeat an image n times have about 1/n of its size on the
-// surface: so many bits over their range serve as well as over the image where it appears once,
-// up to the eighth of a texel that its edges can move within the image. morph-stress, which
-// repeats an image of 64 texels 10 times, takes 1.1 kB less of its 3.9 kB of attributes; half
-// or twice of that part of a texel changes nothing there, nor in the other models, which repeat
-// no image.
+// Returns the step for the bits of an image, also if a transform repeats it along the unit of
+// the coordinates. Coordinates that repeat an image n times show it at about 1/n of its size:
+// as many bits over their range serve as well as over an image that appears once, as long as
+// its edges move by at most an eighth of a texel within the image. morph-stress, which repeats
+// an image of 64 texels 10 times, takes 1.1 kB less of its 3.9 kB of attributes; half or double
+// that part of a texel changes nothing there, nor in the other models, which repeat no image.
 int log2_step_of_uv(const SourceAttribute& source, const AttributeSettings& settings) {
-  constexpr double kStep = 0.25;  // fixed: of a texel; 12 bits are that for images of 1024
+  constexpr double kStep = 0.25;          // fixed: part of a texel; 12 bits for images of 1024
   constexpr double kMostScale = 1 << 10;  // fixed: beyond, textures are noise
   UvUse use;
   for (std::size_t set = 0; set < settings.uv_uses.size(); ++set) {
@@ -126,8 +125,8 @@ int log2_step_of_uv(const SourceAttribute& source, const AttributeSettings& sett
   return log2_step;
 }
 
-// Texture coordinates on a grid; as floats where a few that lie far from all others would make
-// its step so much coarser than the one asked for that the others lost their place in the
+// Quantises texture coordinates on a grid; as floats if a few that lie far from all others
+// would make its step so much coarser than requested that the others lost their place in the
 // image.
 void quantise_uv(const SourceAttribute& source, const AttributeSettings& settings,
                  QuantisedAttribute& out) {
@@ -188,7 +187,7 @@ std::array<std::uint32_t, 2> octahedron_point(const std::array<double, 3>& norma
     u = u < 0.0 ? -x : x;
     v = v < 0.0 ? -y : y;
   }
-  // Of the points around it, the one nearest in angle.
+  // Takes the nearest in angle of the points around it.
   const auto first = [&](double x) {
     return static_cast<std::int64_t>(std::floor((x + 1.0) * h));
   };

@@ -57,7 +57,7 @@ TEST(QuantiseAttribute, CoordinatesThatATransformScalesHaveTheirBitsOverAnImage)
   EXPECT_EQ(log2_step(coordinates(0.1F), {unknown}, 40.0), -18);
   EXPECT_EQ(log2_step(coordinates(0.1F), {40.0 * 1024.0}, 40.0), -18);
   EXPECT_EQ(log2_step(coordinates(0.1F), {40.0 * 64.0}, 40.0), -16);
-  // As far as values of 16 bits go.
+  // The step is as fine as values of 16 bits allow.
   EXPECT_EQ(log2_step(coordinates(0.1F), {unknown}, 1e300), -19);
   EXPECT_EQ(log2_step(coordinates(1.0F), {unknown}, 40.0), -15);
 }
@@ -70,7 +70,7 @@ TEST(QuantiseAttribute, CoordinatesOfUnknownImagesHaveTheirBitsOverAnImage) {
   EXPECT_EQ(log2_step(coordinates(10.2F, "uv"), {64.0}), -12);
 }
 
-// The value that a decoder has of a coordinate.
+// Returns the value that a decoder reconstructs for a coordinate.
 double decoded(const QuantisedAttribute& q, std::size_t i) {
   if (q.header.kind == ValueKind::kFloats) {
     return std::bit_cast<float>(unordered_bits(q.values[i]));
@@ -79,7 +79,7 @@ double decoded(const QuantisedAttribute& q, std::size_t i) {
          std::exp2(q.header.log2_step);
 }
 
-// Coordinates that lie within an image, but for one.
+// All coordinates but one lie within an image.
 TEST(QuantiseAttribute, CoordinatesFarFromTheOthersLeaveTheOthersTheirPrecision) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> within(0.0F, 1.0F);

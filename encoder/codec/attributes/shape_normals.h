@@ -15,9 +15,9 @@ namespace rlpc {
 using Vec3d = std::array<double, 3>;
 
 double dot(const Vec3d& a, const Vec3d& b);
-// Of length 1; zero stays zero.
+// Scales a vector to length 1; zero stays zero.
 Vec3d normalised(Vec3d v);
-// Of unit vectors, in radian; the same on every machine.
+// Returns the angle between unit vectors, in radians; the same on every machine.
 double angle_between(const Vec3d& a, const Vec3d& b);
 
 // The normals of sectors.
@@ -28,7 +28,7 @@ class ShapeNormals {
                std::span<const std::uint32_t> edge_mates, const std::vector<bool>& seams,
                const Smoothing& smoothing);
 
-  // Of length 1, or zero.
+  // Returns the normal of a sector, of length 1, or zero.
   Vec3d normal(std::uint32_t x) const;
 
  private:

@@ -10,7 +10,7 @@ namespace rlpc {
 namespace {
 
 constexpr double kFlagBits = 5.0;  // tuned: what a flag that is rarely set costs; 3 and 8 alike
-constexpr int kMaxPasses = 4;      // fixed: hardly any flag changes after the third
+constexpr int kMaxPasses = 4;      // fixed: few flags change after the third
 
 // Faces whose diagonals can be changed one by one.
 class ChangingFaces {
@@ -31,7 +31,7 @@ class ChangingFaces {
   }
 
   const std::vector<bool>& diagonals() const { return is_diagonal_; }
-  // Changes edge c; false: the face would become too large.
+  // Changes edge c. Returns false if the face would become too large.
   bool turn(std::uint32_t c) {
     const std::uint32_t mate = mesh_.edge_mates[c];
     is_diagonal_[c] = is_diagonal_[mate] = !is_diagonal_[c];
@@ -44,7 +44,7 @@ class ChangingFaces {
     if (!is_diagonal_[c]) keep(face_at(mate / 3));
     return true;
   }
-  // The triangles of the faces on both sides of edge c.
+  // Returns the triangles of the faces on both sides of edge c.
   std::vector<std::uint32_t> triangles_around(std::uint32_t c) const {
     std::vector<std::uint32_t> all = face_at(c / 3);
     if (face_of_[c / 3] != face_of_[mesh_.edge_mates[c] / 3]) {
@@ -53,7 +53,7 @@ class ChangingFaces {
     }
     return all;
   }
-  // About the bits of the residual of sector x.
+  // Estimates the bits of the residual of sector x.
   double cost(std::uint32_t x) const {
     const Vec3l normal =
         sector_normal(mesh_.geometry, {face_of_, normals_}, weight_, mesh_.sectors.corners[x]);
@@ -138,7 +138,7 @@ class SmoothingSearch {
     return {weight, faces.diagonals(), bits};
   }
 
-  // Without diagonals.
+  // Returns a smoothing without diagonals.
   Smoothing plain(SmoothingWeight weight) {
     const ChangingFaces faces(mesh_, weight, wanted_, value_bits_);
     Smoothing plain{weight, faces.diagonals()};
@@ -177,7 +177,7 @@ class SmoothingSearch {
   const SmoothingMesh& mesh_;
   std::span<const std::array<std::uint32_t, 2>> wanted_;
   std::uint32_t value_bits_;
-  std::vector<std::uint32_t> edges_;  // that can be diagonals; the higher of each pair
+  std::vector<std::uint32_t> edges_;  // edges that can be diagonals; the higher of each pair
 };
 
 }  // namespace

@@ -23,10 +23,10 @@ struct SmoothingMesh {
 struct Smoothing {
   SmoothingWeight weight = SmoothingWeight::kAngle;
   std::vector<bool> is_diagonal;  // [edge]; faces have at most kMaxFaceTriangles
-  double bits = 0.0;              // what residuals and diagonals cost, about
+  double bits = 0.0;              // approximate cost of residuals and diagonals
 };
 
-// wanted: points of an octahedron of value_bits, of each sector. Time: some passes over the
+// wanted: [sector], points of an octahedron of value_bits. Takes some passes over the
 // triangles.
 Smoothing find_smoothing(const SmoothingMesh& mesh,
                          std::span<const std::array<std::uint32_t, 2>> wanted,

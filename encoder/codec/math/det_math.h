@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// log2(x) for finite x > 0; absolute error below 1e-9.
+// Returns log2(x) for finite x > 0; absolute error below 1e-9.
 inline double det_log2(double x) {
   assert(x > 0.0);
   const auto bits = std::bit_cast<std::uint64_t>(x);
@@ -29,12 +29,12 @@ inline double det_log2(double x) {
   return exponent + 2.8853900817779268 * t * sum;
 }
 
-// 2^n for |n| < 1000.
+// Returns 2^n for |n| < 1000.
 inline double exact_exp2(int n) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52);
 }
 
-// 2^x for |x| < 900; relative error below 1e-12.
+// Returns 2^x for |x| < 900; relative error below 1e-12.
 inline double det_exp2(double x) {
   const auto whole = static_cast<int>(x < 0.0 ? x - 0.5 : x + 0.5);
   const double t = (x - whole) * 0.69314718055994531;
@@ -43,7 +43,7 @@ inline double det_exp2(double x) {
   return sum * exact_exp2(whole);
 }
 
-// sin(x) for |x| <= pi / 2; absolute error below 1e-15.
+// Returns sin(x) for |x| <= pi / 2; absolute error below 1e-15.
 inline double det_sin(double x) {
   assert(-1.5708 < x && x < 1.5708);
   double sum = 1.0;
@@ -51,7 +51,7 @@ inline double det_sin(double x) {
   return x * sum;
 }
 
-// atan(x) for 0 <= x <= 1; absolute error below 1e-15.
+// Returns atan(x) for 0 <= x <= 1; absolute error below 1e-15.
 inline double det_atan(double x) {
   assert(0.0 <= x && x <= 1.0);
   // Halve the angle twice; it is then at most pi / 16.
@@ -61,7 +61,7 @@ inline double det_atan(double x) {
   return 4.0 * x * sum;
 }
 
-// Nearest integer, ties away from zero; |x| < 2^52.
+// Returns the nearest integer, ties away from zero; |x| < 2^52.
 inline std::int64_t round_to_int(double x) {
   return static_cast<std::int64_t>(x < 0.0 ? x - 0.5 : x + 0.5);
 }

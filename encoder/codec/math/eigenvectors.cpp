@@ -24,8 +24,8 @@ using Square = Eigen::MatrixXd;
 constexpr std::size_t kWide = 600;
 constexpr std::size_t kFewPart = 4;
 
-// Eigen's blocking, and so the order of its sums, depends on the cache sizes: fixes them. Once,
-// as several threads read them.
+// Fixes Eigen's blocking, and so the order of its sums, which depends on the cache sizes. Runs
+// once, as several threads read them.
 void fix_eigen_blocking() {
   [[maybe_unused]] static const bool kIsFixed = [] {
     Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20);
@@ -33,7 +33,7 @@ void fix_eigen_blocking() {
   }();
 }
 
-// The sign of an eigenvector is arbitrary: makes its largest element positive.
+// Fixes the arbitrary sign of an eigenvector: makes its largest element positive.
 void fix_sign(std::vector<double>& v) {
   double largest = 0.0;
   for (const double x : v) {
@@ -54,7 +54,7 @@ Square square_of(std::span<const double> lower, std::size_t width) {
   return square;
 }
 
-// The last `count` columns of a matrix, from the last backwards.
+// Returns the last `count` columns of a matrix, from the last backwards.
 std::vector<std::vector<double>> last_columns(const Square& from, std::size_t count) {
   std::vector<std::vector<double>> vectors;
   for (Eigen::Index l = from.cols(); vectors.size() < count; --l) {
@@ -135,9 +135,9 @@ class SubspaceIteration {
   // None if too many vectors are wanted for this method.
   std::optional<EigenPairs> find(std::size_t max_count, double least) {
     constexpr std::size_t kFirstCount = 16;
-    constexpr double kMargin = 0.5;  // of `least`; the block grows until a value is below
+    constexpr double kMargin = 0.5;  // part of `least`; the block grows until a value is below
     constexpr std::size_t kMoreCount = 8;
-    constexpr std::size_t kTelling = 32;  // the fewest values to extrapolate from
+    constexpr std::size_t kTelling = 32;  // fewest values to extrapolate from
     const std::size_t most = width_ / kFewPart;
     for (std::size_t count = kFirstCount; count <= most; count *= 2) {
       widen(count);

@@ -12,7 +12,7 @@ struct EigenPairs {
       vectors;  // [count][width], orthonormal, for the first values
 };
 
-// The eigenvectors with eigenvalues above `least`, at most max_count. `values` has all
+// Returns the eigenvectors with eigenvalues above `least`, at most max_count. `values` has all
 // eigenvalues or, for a wide matrix of which few vectors are wanted, at least theirs; the time
 // is then quadratic in the width instead of cubic.
 //

@@ -68,8 +68,8 @@ class ShiftedFactors {
   std::vector<Row> rows_;
 };
 
-// The inverse of the upper Cholesky factor of a matrix, [count][count], of which the lower
-// triangle is given. None if a pivot is hardly above 0.
+// Returns the inverse of the upper Cholesky factor of a matrix, [count][count], of which the
+// lower triangle is given. None if a pivot is barely above 0.
 std::optional<std::vector<double>> inverse_of_factor(std::vector<double> lower,
                                                      std::size_t count) {
   constexpr double kLeastPivot = 1e-8;
@@ -94,7 +94,7 @@ std::optional<std::vector<double>> inverse_of_factor(std::vector<double> lower,
   return inverse;
 }
 
-// The same for a matrix that differs so little from the identity that squares of the
+// Returns the same for a matrix that differs so little from the identity that squares of the
 // differences vanish by rounding.
 std::vector<double> inverse_near_identity(std::span<const double> lower, std::size_t count) {
   std::vector<double> inverse(count * count, 0.0);
@@ -157,7 +157,7 @@ std::vector<double> random_vector(std::size_t size, std::uint64_t seed) {
   return x;
 }
 
-// The largest magnitude of an element of (matrix - value) x.
+// Returns the largest magnitude of an element of (matrix - value) x.
 double residual(std::span<const double> diagonal, std::span<const double> beside, double value,
                 const std::vector<double>& x) {
   double worst = 0.0;

@@ -7,8 +7,8 @@
 
 namespace rlpc {
 
-// Inverse iteration (Wilkinson 1965), after which the vectors are orthonormalised together.
-// None if a vector does not converge, for example because a value is not an eigenvalue.
+// Returns the eigenvectors by inverse iteration (Wilkinson 1965), orthonormalised together;
+// none if a vector does not converge, for example because a value is not an eigenvalue.
 //
 //   diagonal  [n], n > 0
 //   beside    [n - 1], above and below the diagonal

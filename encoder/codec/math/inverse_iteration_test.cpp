@@ -22,7 +22,7 @@ void expect_orthonormal(const Vectors& vectors) {
   }
 }
 
-// The second difference, 2 on the diagonal and -1 beside it, has known values and vectors:
+// The second difference, 2 on the diagonal and -1 next to it, has known values and vectors:
 // cosines and sines.
 TEST(TridiagonalEigenvectors, AreSinesForTheSecondDifference) {
   constexpr std::size_t kWidth = 120;

@@ -37,7 +37,7 @@ class FourProducts {
   const double *r0_, *r1_, *r2_, *r3_;
 };
 
-// Rows `begin` to end - 1 of the Gram matrix.
+// Adds rows `begin` to end - 1 of the Gram matrix.
 RLPC_WIDEST void add_gram(std::span<const double> rows, std::size_t width, std::size_t begin,
                           std::size_t end, std::span<double> result) noexcept {
   const std::size_t num_rows = rows.size() / width;
@@ -168,7 +168,7 @@ std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width)
 }
 
 void add_gram_matrix(std::span<const double> rows, std::size_t width, std::span<double> gram) {
-  constexpr std::size_t kRows = 32;  // fixed: of the result, in a pass
+  constexpr std::size_t kRows = 32;  // fixed: rows of the result in a pass
   if (rows.size() * width < kWorthThreads) return add_gram(rows, width, 0, width, gram);
   for_ranges(width, kRows, [&](std::size_t begin, std::size_t end) {
     add_gram(rows, width, begin, end, gram);
@@ -186,7 +186,7 @@ std::vector<double> matrix_product(std::span<const double> a, std::size_t a_widt
 void add_matrix_product(std::span<const double> a, std::size_t a_width,
                         std::span<const double> b, std::size_t b_width,
                         std::span<double> result) {
-  constexpr std::size_t kRows = 32;  // fixed: of the result, in a pass
+  constexpr std::size_t kRows = 32;  // fixed: rows of the result in a pass
   if (a_width == 0 || a.size() * b_width < kWorthThreads) {
     return add_product(a, a_width, b, b_width, result);
   }

@@ -9,15 +9,15 @@
 
 namespace rlpc {
 
-// The lower triangle of rows^T rows, with the diagonal, [width][width]; all other elements are
-// 0.
+// Returns the lower triangle of rows^T rows, with the diagonal, [width][width]; other elements
+// are 0.
 std::vector<double> gram_matrix(std::span<const double> rows, std::size_t width);
 
-// Adds the Gram matrix of further rows. The result is bit-exactly that of all rows together if
-// the number of rows before is a multiple of 4.
+// Adds the Gram matrix of further rows. If the number of rows before is a multiple of 4, the
+// result is bit-exactly that of all rows together.
 void add_gram_matrix(std::span<const double> rows, std::size_t width, std::span<double> gram);
 
-// The leftmost columns of a, as many as b has rows, times b.
+// Returns the leftmost columns of a, as many as b has rows, times b.
 //
 //   a       [num_rows][a_width]
 //   b       [inner][b_width], inner <= a_width
@@ -30,14 +30,14 @@ void add_matrix_product(std::span<const double> a, std::size_t a_width,
                         std::span<const double> b, std::size_t b_width,
                         std::span<double> result);
 
-// Four columns of the product of a row and b, bit-exactly as matrix_product() gives them.
+// Computes four columns of the product of a row and b, bit-exactly like matrix_product().
 //
 //   row     [height of b]
-//   first   of the columns
+//   first   first of the columns
 void four_columns_product(std::span<const double> row, std::span<const double> b,
                           std::size_t b_width, std::size_t first, std::span<double, 4> result);
 
-// row * b, each element summed strictly in the order of the rows of b.
+// Returns row * b, each element summed strictly in the order of the rows of b.
 //
 //   row     [width]
 //   b       [width][b_width]

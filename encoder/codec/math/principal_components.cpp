@@ -45,14 +45,14 @@ void for_some_rows(const TrajectoryRows& rows,
   }
 }
 
-// A quarter of the sampled frames or fewer hold the components of a wide matrix, or the sample
-// says too little.
+// The components of a wide matrix must number at most a quarter of the sampled frames, or the
+// sample is not enough.
 constexpr std::size_t kWide = 1536;    // fixed: time; 512 frames of three coordinates
-constexpr std::size_t kSampled = 512;  // fixed: time; a sixteenth of that of the narrowest
+constexpr std::size_t kSampled = 512;  // fixed: time; a sixteenth of the time of the narrowest
 constexpr std::size_t kMostOfSample = kSampled / 4;  // fixed: see above
 
-// Components of evenly spaced columns only, with what they leave of `min_energy` for safety.
-// None: there are too many.
+// Returns the components of evenly spaced columns, with a reduced min_energy for safety. None:
+// there are too many.
 std::optional<EigenPairs> components_of_sample(const TrajectoryRows& rows, double min_energy,
                                                double& total_energy) {
   constexpr double kLeast = 0.25;  // fixed: energies in the sample differ from those of all
@@ -80,7 +80,7 @@ std::optional<EigenPairs> components_of_sample(const TrajectoryRows& rows, doubl
 
 // Makes vectors orthonormal, in order; leaves out those that depend on others.
 std::vector<std::vector<double>> orthonormal(std::vector<std::vector<double>> vectors) {
-  constexpr double kIndependent = 1e-10;  // fixed: of the squared length, by rounding
+  constexpr double kIndependent = 1e-10;  // fixed: part of the squared length; rounding
   std::vector<std::vector<double>> basis;
   for (std::vector<double>& v : vectors) {
     const double before = squared_norm(v);
@@ -99,7 +99,7 @@ std::vector<std::vector<double>> orthonormal(std::vector<std::vector<double>> ve
   return basis;
 }
 
-// The temporal vectors that the spatial ones of a sample lead to, orthonormal.
+// Returns orthonormal temporal vectors that follow from the spatial ones of a sample.
 std::vector<std::vector<double>> temporal_basis(const TrajectoryRows& rows,
                                                 const EigenPairs& of_sample) {
   const std::size_t width = rows.num_frames;
@@ -127,8 +127,8 @@ std::vector<std::vector<double>> temporal_basis(const TrajectoryRows& rows,
   return orthonormal(std::move(vectors));
 }
 
-// The principal components within the subspace that a sample of the columns leads to. None: a
-// sample says too little.
+// Returns the principal components within the subspace of a sample of the columns. None: a
+// sample is not enough.
 std::optional<ComponentsByRow> components_in_subspace(const TrajectoryRows& rows,
                                                       std::size_t max_components,
                                                       double min_energy) {

@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// One row of values over time for each spatial value: [num_values][num_frames], grid units.
+// Values over time, a row for each spatial value: [num_values][num_frames], grid units.
 struct TrajectoryMatrix {
   std::size_t num_values = 0;  // in clusters: 3 x coded vertices, planes x, y, z
   std::size_t num_frames = 0;
@@ -26,10 +26,10 @@ struct PrincipalComponents {
   double total_energy = 0.0;   // squared norm of the matrix
   std::vector<std::vector<double>>
       temporal;                              // [component][num_frames], leading components only
-  std::vector<std::vector<double>> spatial;  // [component][num_values], likewise
+  std::vector<std::vector<double>> spatial;  // [component][num_values], the same ones
 };
 
-// The components with energy above min_energy, at most max_components.
+// Returns the components with energy above min_energy, at most max_components.
 PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
                                          std::size_t max_components, double min_energy);
 
@@ -42,9 +42,9 @@ struct TrajectoryRows {
   std::function<void(std::size_t first, std::span<double> rows)> write;
 };
 
-// The same components of such a matrix; needs little memory besides the result. The time is
-// quadratic in the number of frames, unless that is large and the components few: then it is
-// linear, and the components are those of a subspace that holds nearly all of their energy.
+// Principal components of such a matrix, computed with little memory besides the result. The
+// time is quadratic in the number of frames, unless that is large and the components few: then
+// it is linear, and the components are those of a subspace with nearly all of their energy.
 struct ComponentsByRow {
   double total_energy = 0.0;
   std::vector<double> energy;

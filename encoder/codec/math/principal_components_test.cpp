@@ -17,7 +17,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
-// The sum of `rank` outer products of random vectors.
+// Returns the sum of `rank` outer products of random vectors.
 TrajectoryMatrix random_matrix(unsigned seed, std::size_t num_values, std::size_t num_frames,
                                std::size_t rank) {
   std::mt19937 random(seed);
@@ -253,7 +253,8 @@ TEST(PrincipalComponents, AreDeterministic) {
   EXPECT_EQ(a.temporal, b.temporal);
 }
 
-// Wide matrices of which few components are wanted: by way of a sample of the columns.
+// Wide matrices of which few components are wanted are analysed through a sample of the
+// columns.
 TEST(ComponentsByRow, OfAWideMatrixHaveItsEnergy) {
   constexpr std::size_t kValues = 1600;
   constexpr std::size_t kColumns = 1560;

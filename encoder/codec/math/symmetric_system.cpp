@@ -7,7 +7,7 @@
 namespace rlpc {
 namespace {
 
-// Row `to` of b -= factor * row `from`.
+// Subtracts factor * row `from` of b from row `to`.
 void subtract_row(std::span<double> b, std::size_t width, double factor, std::size_t from,
                   std::size_t to) {
   if (width == 1) {

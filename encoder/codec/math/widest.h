@@ -2,8 +2,8 @@
 // outputs, whose sums have the same order at every width.
 #pragma once
 
-// The choice between versions runs before the thread sanitizer is initialised.
-#ifdef __SANITIZE_THREAD__  // of g++
+// The choice between versions would run before the thread sanitizer is initialised.
+#ifdef __SANITIZE_THREAD__  // g++
 #define RLPC_NO_CHOICE
 #elif defined(__has_feature)
 #if __has_feature(thread_sanitizer)

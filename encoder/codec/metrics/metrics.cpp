@@ -38,7 +38,7 @@ void measure_spread(std::span<const double> xyz, FrameMetrics& frame) {
   }
 }
 
-// 100 * part / whole; 0 / 0 is 0.
+// Returns 100 * part / whole; 0 / 0 is 0.
 double percent(double part, double whole) {
   if (whole > 0) return 100 * part / whole;
   return part > 0 ? kInfinity : 0;
@@ -109,7 +109,7 @@ void MetricsAccumulator::add_to_totals(const FrameMetrics& frame) {
   ++num_frames_;
 }
 
-// PMSE of a frame for R = 1.
+// Returns the PMSE of a frame for R = 1.
 double MetricsAccumulator::mean_squared(const FrameMetrics& frame) const {
   const double vertices = frame.moved_vertices > 0 ? frame.moved_vertices : num_vertices_;
   return frame.squared_error / (3 * vertices);
@@ -143,8 +143,8 @@ void MetricsAccumulator::append(const MetricsAccumulator& next) {
   previous_ = next.previous_;
 }
 
-// Sum of squared distances from the mean of all frames: those from the mean of each frame, and
-// those of the means. Exactly the first if the means coincide.
+// Returns the sum of squared distances from the mean of all frames: the distances from the mean
+// of each frame, and those of the means. Exactly the former if the means coincide.
 double MetricsAccumulator::sequence_spread() const {
   double between = squared_mean_sum_;
   for (const double sum : mean_sum_) between -= sum * sum / num_frames_;

@@ -20,7 +20,7 @@ struct FrameMetrics {
   std::uint32_t max_error_vertex = 0;
   // Vertices of the original that moved since the previous frame; in frame 0: all.
   std::uint32_t moved_vertices = 0;
-  // Infinite if the frame is exact:
+  // PSNRs are infinite if the frame is exact.
   double diagonal_psnr_db = 0;    // as in Metrics
   double ramanathan_psnr_db = 0;  // see MetricsAccumulator
 };
@@ -30,20 +30,20 @@ struct Metrics {
   // 100 * ||A - A'||_F / ||A - E(A)||_F, E(A) the mean vertex of each frame. If all vertices of
   // every frame coincide: 0 if there is no error, otherwise infinite.
   double kg_error_percent = 0;
-  // The same, E(A) being one vertex: the mean of all vertices of all frames. Published KG
-  // errors of the sequences cow and chicken have this norm.
+  // The same with E(A) the mean of all vertices of all frames. Published KG errors of the
+  // sequences cow and chicken have this norm.
   double kg_sequence_error_percent = 0;
   // RMS distance of the original's vertices from the mean of their frame, and from that of all
   // frames, units. Both KG errors are rms_error relative to these.
   double rms_spread = 0;
   double rms_sequence_spread = 0;
   double rms_error = 0;               // RMS distance over vertices and frames, units
-  double rms_error_percent = 0;       // of the diagonal; infinite if only that is 0
+  double rms_error_percent = 0;       // per cent of the diagonal; infinite if only that is 0
   double max_error = 0;               // units
-  double max_error_percent = 0;       // likewise of the diagonal
+  double max_error_percent = 0;       // per cent of the diagonal; infinite if only that is 0
   std::uint32_t max_error_frame = 0;  // the first frame and vertex with this error
   std::uint32_t max_error_vertex = 0;
-  double diagonal = 0;          // of the bounding box of the original over all frames, units
+  double diagonal = 0;          // of the original's bounding box over all frames, units
   double max_displacement = 0;  // largest in the original between adjacent frames, units
   // 20 log10(diagonal / rms_error): the peak is the diagonal. Infinite without an error.
   double diagonal_psnr_db = 0;
@@ -65,7 +65,7 @@ class MetricsAccumulator {
   explicit MetricsAccumulator(std::uint32_t num_vertices,  // at least 1
                               Keep keep = kFrames);
 
-  // Before the first frame: the original of the frame before it, which is not counted.
+  // Sets the original of the frame before the first one, which is not counted.
   void follow(std::span<const double> original) {
     previous_.assign(original.begin(), original.end());
   }
@@ -75,11 +75,11 @@ class MetricsAccumulator {
   void add_frame(std::span<const double> original, std::span<const float> decoded);
   void add_frame(std::span<const float> original, std::span<const float> decoded);
 
-  // Adds the frames of `next`, at least one, which keeps frames and follows the last one here.
+  // Adds the frames of `next`, at least one, which has kFrames and follows the last frame here.
   // The result is bit-exactly that of adding them here.
   void append(const MetricsAccumulator& next);
 
-  // The metrics of all frames so far, at least one.
+  // Returns the metrics of all frames so far, at least one.
   Metrics result() const;
 
  private:
@@ -97,7 +97,7 @@ class MetricsAccumulator {
   double squared_error_ = 0;
   double spread_ = 0;
   std::array<double, 3> first_mean_ = {};
-  std::array<double, 3> mean_sum_ = {};  // of the means of frames, relative to the first
+  std::array<double, 3> mean_sum_ = {};  // sum of the means of frames, relative to the first
   double squared_mean_sum_ = 0;
   double log_sum_ = 0;  // sum of log10(mean_squared()) over inexact frames
   std::uint32_t num_inexact_ = 0;
@@ -107,7 +107,7 @@ class MetricsAccumulator {
   double box_max_[3] = {};
 };
 
-// Bits per vertex per frame, from the size of a file.
+// Returns bits per vertex per frame, from the size of a file.
 double bits_per_vertex_per_frame(std::uint64_t file_bytes, std::uint64_t num_vertices,
                                  std::uint64_t num_frames);
 

@@ -33,7 +33,7 @@ class RingEdgeDifference {
   struct Parts {
     double spatial = 0;
     double previous_temporal =
-        0;  // of the previous frame, whose two virtual edges are now known
+        0;  // of the previous frame, both of whose virtual edges are now known
   };
   Parts add_frame(std::span<const float> original, std::span<const float> decoded);
 
@@ -53,7 +53,7 @@ class RingEdgeDifference {
   std::vector<float> previous_original_;
   std::vector<float> previous_decoded_;
   std::vector<Pair> temporal_edges_;  // [num_vertices], to the previous frame
-  // Work space of spatial_part():
+  // Work space of spatial_part().
   std::vector<Pair> lengths_;   // [num_edges]
   std::vector<double> weight_;  // [num_vertices], here and below
   std::vector<double> mean_;

@@ -117,7 +117,8 @@ void StedSpatial::measure_edges(std::span<const float> original,
   }
 }
 
-// For each cycle of three edges, from the sums of each vertex the edge opposite to it.
+// Subtracts, for each cycle of three edges, from the sums of each vertex the edge opposite to
+// it.
 void StedSpatial::subtract_opposite_edges() {
   for (std::uint32_t u = 0; u < num_vertices_; ++u) {
     for (std::size_t i = first_arc_[u]; i < first_arc_[u + 1]; ++i) {
@@ -173,7 +174,7 @@ void StedTemporal::add_frame(std::span<const float> original, std::span<const fl
   previous_decoded_.assign(decoded.begin(), decoded.end());
 }
 
-// Of a step that differences_ has.
+// Returns the part of a step that differences_ has.
 double StedTemporal::part_of(std::size_t step) const {
   const std::size_t first_kept = num_steps_ - lengths_.size();
   const std::size_t begin = step < kStepsBefore ? 0 : step - kStepsBefore;

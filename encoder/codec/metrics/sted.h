@@ -29,8 +29,8 @@
 
 namespace rlpc {
 
-// The edges of triangles without duplicates, in ascending order, the lower vertex first. Equal
-// corners of a triangle give no edge.
+// Returns the edges of triangles without duplicates, in ascending order, the lower vertex
+// first. Equal corners of a triangle make no edge.
 std::vector<std::array<std::uint32_t, 2>> edges_of(std::span<const Triangle> triangles);
 
 // The spatial part, frame by frame. A frame takes time linear in the number of vertices and
@@ -62,11 +62,11 @@ class StedSpatial {
   std::vector<std::size_t> first_arc_;
   std::vector<Arc> arcs_;
   std::vector<Sums> edge_sums_;      // [edge]
-  std::vector<Sums> own_sums_;       // [vertex]: of the edges that meet there
-  std::vector<Sums> two_ring_sums_;  // [vertex]: and of those that meet in its neighbours
+  std::vector<Sums> own_sums_;       // [vertex]: over edges that meet there
+  std::vector<Sums> two_ring_sums_;  // [vertex]: also over edges that meet in its neighbours
 };
 
-// The temporal part. Keeps as many steps as a window has: memory is linear in the vertices.
+// The temporal part. Keeps the steps of one window: memory is linear in the vertices.
 class StedTemporal {
  public:
   static constexpr double kDt = 0.0003;
@@ -77,7 +77,7 @@ class StedTemporal {
 
   void add_frame(std::span<const float> original, std::span<const float> decoded);
 
-  // [step]: the part of each step so far, that of the last ones with the steps known.
+  // Returns the part of each step so far; windows of the last steps contain only known steps.
   std::vector<double> steps() const;
 
  private:
@@ -89,8 +89,8 @@ class StedTemporal {
   std::vector<float> previous_decoded_;
   std::size_t num_steps_ = 0;
   std::deque<std::vector<double>> lengths_;      // s of the last steps, the latest at the end
-  std::deque<std::vector<double>> differences_;  // |s - s'| of those without a whole window
-  std::vector<double> parts_;                    // of the steps with a whole window
+  std::deque<std::vector<double>> differences_;  // |s - s'| of steps without a whole window
+  std::vector<double> parts_;                    // parts of steps with a whole window
 };
 
 constexpr double kStedTemporalWeight = 9.144e-5;  // c

@@ -20,7 +20,7 @@ TEST(Sted, EdgesAreListedOnce) {
   EXPECT_EQ(edges_of(triangles), expected);
 }
 
-// The definition, one vertex after the other.
+// Follows the definition, one vertex after the other.
 double plain_spatial(std::uint32_t num_vertices, std::span<const Triangle> triangles,
                      std::span<const float> original, std::span<const float> decoded) {
   const auto edges = edges_of(triangles);

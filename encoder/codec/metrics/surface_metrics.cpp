@@ -13,7 +13,7 @@ Vec3d cross(const Vec3d& a, const Vec3d& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// A normal whose length is twice the area of the triangle.
+// Returns a normal whose length is twice the area of the triangle.
 Vec3d normal(std::span<const float> xyz, const Triangle& t) {
   const Vec3d p = point_at(xyz, t[0]);
   return cross(minus(point_at(xyz, t[1]), p), minus(point_at(xyz, t[2]), p));

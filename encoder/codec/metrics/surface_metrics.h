@@ -3,7 +3,7 @@
 //
 // Normal angle: the angle between the original and the decoded normal of a triangle. Triangles
 // without area in the original are skipped; those that lost their area count as 90 degrees.
-// Means are weighted by area in the original, so that slivers hardly count.
+// Means are weighted by area in the original, so that slivers barely count.
 #pragma once
 
 #include <cstdint>
@@ -27,9 +27,9 @@ struct FrameSurface {
 };
 
 struct SurfaceMetrics {
-  // Whether there are steps to compare with an extent: the temporal part is relative to the
-  // diagonal of the first frame, which is 0 where that frame is a point. Without, sted and its
-  // temporal part are 0, also those of frames.
+  // Whether STED is defined: its temporal part is relative to the diagonal of the first frame,
+  // which is 0 if that frame is a point. If not, sted and its temporal part are 0, also in
+  // `frames`.
   bool has_sted = true;
   double sted = 0;
   double sted_spatial = 0;
@@ -52,7 +52,7 @@ class SurfaceAccumulator {
   // triangles.
   void add_frame(std::span<const float> original, std::span<const float> decoded);
 
-  // The metrics of all frames so far, at least one.
+  // Returns the metrics of all frames so far, at least one.
   SurfaceMetrics result() const;
 
  private:

@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t kCoarsest = 96;  // fixed: time of the eigenvectors
 constexpr std::size_t kVectors = 2;     // fixed: time; each gives two divisions
 constexpr std::int64_t kSlack = 100;    // fixed: balance; a side may exceed its share by 1 %
-// fixed: to end. Coarsening stops where it leaves more than this part of the vertices, in per
+// fixed: to end. Coarsening stops if it leaves more than this part of the vertices, in per
 // cent.
 constexpr std::uint64_t kStall = 95;
 
@@ -23,7 +23,7 @@ struct Shares {
   std::uint32_t parts0;
   std::uint32_t parts1;
 
-  // The most weight of each side. slack: for the vertices of a coarse graph.
+  // Returns the maximum weight of each side. slack: for the vertices of a coarse graph.
   SideWeights most(std::int64_t total, std::int64_t slack) const {
     SideWeights most{};
     const std::int64_t parts = std::int64_t{parts0} + parts1;
@@ -40,9 +40,9 @@ std::int64_t total_weight(const Graph& graph) {
   return std::accumulate(graph.weight.begin(), graph.weight.end(), std::int64_t{0});
 }
 
-// The eigenvectors of the least eigenvalues of the Laplacian L, except the constant one: those
-// of the largest of s (1 - e e^T / n) - L, which is positive semidefinite if s is at least the
-// largest of L.
+// Returns the eigenvectors of the least eigenvalues of the Laplacian L, except the constant
+// one: those of the largest of s (1 - e e^T / n) - L, which is positive semidefinite if s is at
+// least the largest of L.
 std::vector<std::vector<double>> fiedler_vectors(const Graph& graph) {
   const std::size_t n = graph.num_vertices();
   std::vector<double> degree(n);
@@ -62,8 +62,8 @@ std::vector<std::vector<double>> fiedler_vectors(const Graph& graph) {
   return leading_eigenvectors(matrix, n, kVectors, 0.0).vectors;
 }
 
-// Spectral bisection: the first vertices along an eigenvector are on side 0. The best of
-// several divisions, once they are refined.
+// Divides by spectral bisection: the first vertices along an eigenvector are on side 0. Returns
+// the best of several divisions, once they are refined.
 Sides bisect_coarsest(const Graph& graph, const Shares& shares, const SideWeights& most) {
   const std::uint32_t n = graph.num_vertices();
   const std::int64_t total = total_weight(graph);

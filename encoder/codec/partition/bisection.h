@@ -8,9 +8,9 @@
 
 namespace rlpc {
 
-// Divides a connected or other graph in proportion to the numbers of parts that both sides are
-// to be divided into: few edges are cut, and each side has at least as many vertices as parts.
-// All vertices have weight 1, and there are at least as many as parts.
+// Divides a graph, connected or not, in proportion to the numbers of parts that the two sides
+// are to be divided into: few edges are cut, and each side has at least as many vertices as
+// parts. All vertices have weight 1, and there are at least as many as parts.
 Sides bisect(const Graph& graph, std::uint32_t parts0, std::uint32_t parts1);
 
 }  // namespace rlpc

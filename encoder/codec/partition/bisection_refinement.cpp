@@ -33,7 +33,7 @@ class Pass {
     }
   }
 
-  // Whether anything got better.
+  // Runs a pass. Returns whether anything got better.
   bool run() {
     const State start{excess(), 0};
     State best = start;
@@ -77,7 +77,7 @@ class Pass {
     return std::min(*of_0, *of_1).second;
   }
 
-  // The best vertex of a side that the other side has room for.
+  // Returns the best vertex of a side that the other side has room for.
   std::optional<Entry> first_that_fits(std::size_t s) const {
     std::size_t tried = 0;
     for (const Entry& entry : queue_[s]) {
@@ -87,7 +87,7 @@ class Pass {
     return std::nullopt;
   }
 
-  // If no edge is cut, any vertex may have to move.
+  // Queues all vertices of a side: if no edge is cut, any vertex may have to move.
   void queue_all(std::size_t s) {
     for (std::uint32_t v = 0; v < graph_.num_vertices(); ++v) {
       if (side_[v] == s && !is_locked_[v]) queue_[s].emplace(-gain_[v], v);
@@ -117,7 +117,7 @@ class Pass {
   std::vector<bool> is_locked_;     // has moved
   SideWeights weight_{};
   std::array<std::set<Entry>, 2>
-      queue_;  // by side: vertices at the cut, or without edges; best gain first
+      queue_;  // [side]: vertices at the cut, or without edges; best gain first
   std::vector<std::uint32_t> moved_;
 };
 

@@ -9,15 +9,15 @@
 
 namespace rlpc {
 
-using Sides = std::vector<std::uint8_t>;  // 0 or 1, of each vertex
+using Sides = std::vector<std::uint8_t>;  // [vertex], 0 or 1
 using SideWeights = std::array<std::int64_t, 2>;
 
-// Moves vertices one by one, also where that cuts more edges at first, and keeps the moves up
-// to the best state: first the least weight above `most` of a side, then the least weight of
-// cut edges. Repeats that while it helps.
+// Moves vertices one by one, even if that cuts more edges at first, and keeps the moves up to
+// the best state: the least weight of a side above `most`, then the least weight of cut edges.
+// Repeats this while it helps.
 void refine_bisection(const Graph& graph, const SideWeights& most, Sides& side);
 
-// The weight of edges between sides, or between parts.
+// Returns the weight of edges between sides, or between parts.
 template <typename Part>
 std::int64_t cut_weight(const Graph& graph, const std::vector<Part>& part) {
   std::int64_t cut = 0;

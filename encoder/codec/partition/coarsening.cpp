@@ -31,7 +31,8 @@ class Matching {
     mate_[b] = a;
   }
 
-  // Of equally heavy edges, that to the lightest vertex: coarse vertices stay equally large.
+  // Matches along the heaviest edge; of equally heavy ones, that to the lightest vertex, so
+  // that coarse vertices stay equally large.
   void match_along_heaviest_edge(std::uint32_t v) {
     if (!is_free(v)) return;
     std::uint32_t best = v;
@@ -47,7 +48,7 @@ class Matching {
     if (best != v) match(v, best);
   }
 
-  // Pairs those that have no mate.
+  // Pairs vertices that have no mate.
   void match_all(std::span<const std::uint32_t> vertices) {
     const auto end = vertices.end();
     auto waiting = end;

@@ -16,7 +16,7 @@ struct GraphEdge {
 
 struct Graph {
   std::vector<std::uint32_t> first{0};     // [num_vertices + 1], into the arrays of edges
-  std::vector<std::uint32_t> neighbour;    // every edge stands at both ends, ascending
+  std::vector<std::uint32_t> neighbour;    // ascending; every edge is listed at both ends
   std::vector<std::uint32_t> edge_weight;  // [neighbour.size()]
   std::vector<std::uint32_t> weight;       // [num_vertices]
 
@@ -26,12 +26,11 @@ struct Graph {
   }
 };
 
-// weight: of the vertices, [num_vertices]. Edges of the same vertices become one with the sum
-// of their weights; edges of a vertex with itself are dropped.
+// Makes a graph. weight: [num_vertices]. Edges between the same vertices become one with the
+// sum of their weights; edges from a vertex to itself are dropped.
 Graph make_graph(std::vector<std::uint32_t> weight, std::span<const GraphEdge> edges);
 
-// The vertices that are marked, with the edges between them. original: their numbers in
-// `graph`.
+// The marked vertices and the edges between them. original: their numbers in `graph`.
 struct Subgraph {
   Graph graph;
   std::vector<std::uint32_t> original;

@@ -9,10 +9,10 @@
 
 namespace rlpc {
 
-// Finds the nearest of up to `count` centres for each point; of equally near ones, the first.
-// The centres start farthest from each other: the first farthest from the mean of all points,
-// each further one farthest from those before. There are fewer if fewer points differ, and some
-// may end without points.
+// Finds the nearest of up to `count` centres for each point, the first of equally near ones.
+// The centres start far from each other: the first is the point farthest from the mean of all
+// points, each further one the point farthest from those before. There are fewer centres if
+// fewer points differ, and some may end without points.
 //
 //   points  [num_points][dimensions]
 //   count   1 to kMaxParts

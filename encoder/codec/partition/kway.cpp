@@ -10,7 +10,7 @@ namespace rlpc {
 namespace {
 
 constexpr int kPasses = 8;               // fixed: time; over all vertices
-constexpr std::uint32_t kPerCent = 103;  // fixed: balance; the largest part, of the mean
+constexpr std::uint32_t kPerCent = 103;  // fixed: balance; largest part over the mean
 
 void divide(const Graph& graph, const std::vector<std::uint32_t>& original, std::uint32_t first,
             std::uint32_t count, Partition& partition) {
@@ -72,9 +72,9 @@ class PartRefinement {
 
   const Graph& graph_;
   Partition& partition_;
-  std::vector<std::uint32_t> size_;   // of each part
-  std::vector<std::uint64_t> edges_;  // of the vertex, to each part; 0 between calls
-  std::vector<std::uint16_t> near_;   // the parts that it has edges to
+  std::vector<std::uint32_t> size_;   // [part]
+  std::vector<std::uint64_t> edges_;  // [part]: edges of the vertex to it; 0 between calls
+  std::vector<std::uint16_t> near_;   // parts that the vertex has edges to
   std::uint32_t most_ = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace rlpc {
 
-// Parts of points that are near each other, whatever the edges. Some numbers of parts may not
+// Makes parts of points that are near each other, whatever the edges. Some part numbers may not
 // occur.
 //
 //   count  1 to kMaxParts

@@ -7,7 +7,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kNeighbours = 6;  // fixed: of a vertex of a regular mesh
+constexpr std::size_t kNeighbours = 6;  // fixed: neighbours in a regular mesh
 
 std::vector<GraphEdge> mesh_edges(std::span<const Triangle> triangles) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -23,10 +23,10 @@ std::vector<GraphEdge> mesh_edges(std::span<const Triangle> triangles) {
   return edges;
 }
 
-// The vertices of each component, by its lowest vertex.
+// Returns the vertices of each component, in the order of lowest vertices.
 std::vector<std::vector<std::uint32_t>> components(std::size_t num_vertices,
                                                    std::span<const GraphEdge> edges) {
-  std::vector<std::uint32_t> lower(num_vertices);  // of the same component; the lowest: itself
+  std::vector<std::uint32_t> lower(num_vertices);  // in the same component; the lowest: itself
   std::iota(lower.begin(), lower.end(), 0U);
   const auto lowest = [&](std::uint32_t v) {
     while (lower[v] != v) v = lower[v] = lower[lower[v]];

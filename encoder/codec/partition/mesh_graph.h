@@ -1,4 +1,4 @@
-// The graph of a mesh that its partitions are made on.
+// Graph of a mesh, for its partitions.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ namespace rlpc {
 inline constexpr std::uint32_t kMeshEdge = 4;  // fixed: so that links are cut first
 inline constexpr std::uint32_t kLink = 1;      // fixed: the least
 
-// A vertex of weight 1 per vertex of the mesh; an edge of weight kMeshEdge per edge of the
-// mesh. Components of the mesh, such as the single points of a point cloud, are linked to the
-// nearest other ones by edges of small weight, until all vertices are connected.
+// Makes a vertex of weight 1 for each vertex of the mesh, and an edge of weight kMeshEdge for
+// each edge. Components of the mesh, such as the single points of a point cloud, are linked to
+// the nearest other ones by edges of small weight, until all vertices are connected.
 Graph make_mesh_graph(std::span<const Point3> points, std::span<const Triangle> triangles);
 
 }  // namespace rlpc

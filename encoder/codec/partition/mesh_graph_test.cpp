@@ -10,7 +10,7 @@
 namespace rlpc {
 namespace {
 
-// Vertices that can be reached from vertex 0.
+// Returns the number of vertices that can be reached from vertex 0.
 std::size_t reached(const Graph& graph) {
   std::vector<bool> seen(graph.num_vertices());
   std::vector<std::uint32_t> found{0};

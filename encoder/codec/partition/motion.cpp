@@ -14,8 +14,8 @@ namespace rlpc {
 namespace {
 
 constexpr std::uint32_t kSampleFrames = 24;  // fixed: memory
-// tuned (off: 0): The linear part of a motion is held back to that of a translation, as flat
-// parts do not determine it; relative to the spread of the part.
+// tuned (off: 0): The linear part of a motion is pulled to that of a translation, as flat parts
+// do not determine it; relative to the spread of the part.
 constexpr double kRidge = 1e-3;
 constexpr std::uint32_t kSeedVertices = 32;  // tuned: Vertices that give a new part its motion.
 constexpr int kRoundsWhileGrowing =
@@ -81,12 +81,12 @@ class MotionParts {
   }
 
   const Graph& graph_;
-  std::size_t values_ = 0;            // of a displacement
+  std::size_t values_ = 0;            // values of a displacement
   std::vector<Point3> rest_;          // positions in the first frame
   std::vector<double> displacement_;  // [num_vertices][values]
   std::vector<AffineMotion> motions_;
   Partition partition_;
-  std::vector<double> error_;  // of each vertex in its part
+  std::vector<double> error_;  // [vertex], in its part
 };
 
 AffineMotion MotionParts::fit(const std::vector<std::uint32_t>& vertices) const {
@@ -135,7 +135,7 @@ double MotionParts::error(const AffineMotion& motion, std::uint32_t v) const {
   return sum;
 }
 
-// The vertices of the graph that are nearest by edges.
+// Returns the vertices of the graph that are nearest by edges.
 std::vector<std::uint32_t> MotionParts::around(std::uint32_t v) const {
   std::vector<std::uint32_t> found{v};
   for (std::size_t i = 0; i < found.size() && found.size() < kSeedVertices; ++i) {
@@ -147,7 +147,7 @@ std::vector<std::uint32_t> MotionParts::around(std::uint32_t v) const {
   return found;
 }
 
-// A part at the vertex with the largest error; false if there is no error.
+// Adds a part at the vertex with the largest error. Returns false if there is no error.
 bool MotionParts::add_part() {
   const auto worst = std::max_element(error_.begin(), error_.end());
   if (*worst <= 0.0) return false;
@@ -167,7 +167,7 @@ bool MotionParts::add_part() {
   return true;
 }
 
-// The motions of the first parts; a part without vertices keeps its motion.
+// Fits the motions of the first parts; a part without vertices keeps its motion.
 void MotionParts::fit_all(std::size_t count) {
   motions_.resize(count);
   std::vector<std::vector<std::uint32_t>> vertices(count);
@@ -177,7 +177,7 @@ void MotionParts::fit_all(std::size_t count) {
   });
 }
 
-// Whether any vertex moved to the part of a neighbour.
+// Assigns vertices. Returns whether any moved to the part of a neighbour.
 bool MotionParts::assign() {
   const Partition before = partition_;
   for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {

@@ -9,10 +9,11 @@
 
 namespace rlpc {
 
-// Parts in which one affine motion from the first frame to each other one leaves small errors,
-// as in registration-based coding. A part begins where the error is largest, with the motion of
-// the vertices around; then motions are fitted to parts and vertices move to better ones beside
-// theirs, in turn, as in Lloyd's algorithm. There are fewer parts if fewer leave no error.
+// Makes parts in which one affine motion from the first frame to each other one leaves small
+// errors, as in registration-based coding. A part begins where the error is largest, with the
+// motion of the vertices around; then motions are fitted to parts, and vertices move to better
+// adjacent parts, in turn, as in Lloyd's algorithm. There are fewer parts if fewer leave no
+// error.
 //
 //   frames  at least two
 //   graph   of the mesh, connected

@@ -18,7 +18,7 @@ Partition by_motion(const PartitionScene& scene, const SpanFrames& frames,
   return motion_partition(frames, make_mesh_graph(scene.points, scene.triangles), count);
 }
 
-// A sheet of 30 columns, of which the first and the last ten turn about column 10 and
+// Moves a sheet of 30 columns, of which the first and the last ten turn about column 10 and
 // column 20.
 Point3 hinged(const PartitionScene& scene, std::uint32_t f, std::uint32_t v) {
   Point3 p = scene.points[v];
@@ -39,7 +39,7 @@ TEST(MotionPartition, FindsTheMovingParts) {
   EXPECT_EQ(parts_of(partition).size(), 3U);
   for (std::uint32_t v = 0; v < partition.size(); ++v) {
     const std::uint32_t column = v % 31;
-    if (column == 10 || column == 20) continue;  // of both
+    if (column == 10 || column == 20) continue;  // in both parts
     EXPECT_EQ(partition[v], partition[column < 10 ? 0 : column < 20 ? 15 : 30]) << v;
   }
 }

@@ -1,7 +1,7 @@
 // Divides the vertices of an animated mesh into parts: clusters of the Baseline profile.
 //
-// Three methods are those that Ramanathan, Kassim and Tan compare (2008, section 2); the fourth
-// looks at the motion.
+// Three methods are those that Ramanathan, Kassim and Tan (2008, section 2) compare; the fourth
+// uses the motion.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ using Partition = std::vector<std::uint16_t>;
 
 inline constexpr std::uint32_t kMaxParts = 1024;  // fixed: clusters of the highest level
 
-// At most `count` parts, 1 to kMaxParts: fewer where there are fewer vertices, or fewer that
-// differ. Memory is linear in the number of vertices; the frames apart.
+// Makes at most `count` parts, 1 to kMaxParts; fewer if there are fewer vertices, or fewer that
+// differ. Memory besides the frames is linear in the number of vertices.
 //
 //   method     not kSeeds
 //   frames     at least one, with at least one vertex

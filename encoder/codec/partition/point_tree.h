@@ -1,4 +1,4 @@
-// Nearest points of a set, by a k-d tree.
+// Finds nearest points of a set with a k-d tree.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ class PointTree {
  public:
   explicit PointTree(std::vector<Point3> points);
 
-  // Up to `count` points that are nearest to point `of`, without itself, nearest first. Of
-  // equally distant ones, some.
+  // Returns up to `count` points nearest to point `of`, without itself, nearest first. Which of
+  // several equally distant ones are found is not specified.
   std::vector<std::uint32_t> nearest(std::uint32_t of, std::size_t count) const;
 
  private:
@@ -42,7 +42,7 @@ class PointTree {
 
   std::vector<Point3> points_;
   std::vector<std::uint32_t> order_;  // the root of a range is in its middle
-  std::vector<std::uint8_t> axis_;    // that a range is divided along, at its root
+  std::vector<std::uint8_t> axis_;    // at the root of a range: the axis that divides it
 };
 
 }  // namespace rlpc

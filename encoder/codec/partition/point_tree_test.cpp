@@ -12,7 +12,7 @@
 namespace rlpc {
 namespace {
 
-// Squared distances to the nearest points, by trying all.
+// Returns squared distances to the nearest points, by trying all.
 std::vector<double> distances_to_all(const std::vector<Point3>& points, std::uint32_t of,
                                      std::size_t count) {
   std::vector<double> distances;

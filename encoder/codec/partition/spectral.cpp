@@ -17,7 +17,7 @@ constexpr std::uint32_t kSamples = 400;      // fixed: time is cubic in them
 constexpr std::uint32_t kSamplesOfPart = 2;  // fixed: for k-means to choose from
 constexpr std::size_t kMaxVectors = 32;      // fixed: time
 
-// D^-1/2 W D^-1/2, where W is exp(-d / 2) of the distances d, relative to their mean.
+// Returns D^-1/2 W D^-1/2, where W is exp(-d / 2) of the distances d, relative to their mean.
 //
 // Note: the paper divides d by the square of the mean, which depends on its unit.
 std::vector<double> affinity(const SurfaceSamples& samples) {
@@ -42,7 +42,7 @@ std::vector<double> affinity(const SurfaceSamples& samples) {
   return w;
 }
 
-// The rows of the leading eigenvectors, as points of the unit sphere: [n][dimensions].
+// Returns the rows of the leading eigenvectors as points of the unit sphere, [n][dimensions].
 std::vector<double> embedding(const std::vector<std::vector<double>>& vectors, std::size_t n) {
   const std::size_t dimensions = vectors.size();
   std::vector<double> points(n * dimensions);

@@ -12,9 +12,10 @@
 
 namespace rlpc {
 
-// Some numbers of parts may not occur. An affinity of all pairs of vertices would take too much
-// time and memory, so it is that of a few hundred samples (twice as many as parts, if that is
-// more), and each vertex is in the part of its nearest sample.
+// Divides the surface into parts; some part numbers may not occur. Affinities of all pairs of
+// vertices would take too much time and memory, so those of a few hundred samples (twice as
+// many as parts, if that is more) are used, and each vertex is in the part of its nearest
+// sample.
 //
 //   graph  connected
 //   count  1 to kMaxParts

@@ -11,8 +11,8 @@
 namespace rlpc {
 namespace {
 
-// tuned (off: 1): What a geodesic distance weighs, beside an angular one. The paper has it
-// close to zero.
+// tuned (off: 1): Weight of a geodesic distance, compared with an angular one. In the paper, it
+// is close to zero.
 constexpr double kGeodesic = 0.2;
 constexpr double kConvex = 0.2;  // fixed: weight of convex angles, as in the paper
 
@@ -26,7 +26,7 @@ double product(const Point3& a, const Point3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Unit normals of vertices, weighted by area; zero where there is none.
+// Returns unit normals of vertices, weighted by area; zero where there is none.
 std::vector<Point3> vertex_normals(std::span<const Point3> points,
                                    std::span<const Triangle> triangles) {
   std::vector<Point3> normals(points.size(), Point3{});
@@ -46,7 +46,7 @@ std::vector<Point3> vertex_normals(std::span<const Point3> points,
   return normals;
 }
 
-// Divides by the mean.
+// Divides all values by their mean.
 void normalise(std::vector<double>& values) {
   double sum = 0.0;
   for (const double x : values) sum += x;
@@ -82,11 +82,11 @@ void shorten(const Graph& graph, std::span<const double> lengths, std::uint32_t 
 }
 
 struct Cells {
-  Graph graph;  // of samples whose cells touch
+  Graph graph;  // edges join samples whose cells touch
   std::vector<double> lengths;
 };
 
-// The shortest way between two samples that crosses from cell to cell once.
+// Finds the shortest path between two samples that crosses from cell to cell once.
 Cells cells_of(const Graph& graph, std::span<const double> lengths,
                const std::vector<std::uint32_t>& nearest, const std::vector<double>& distance,
                std::uint32_t count) {

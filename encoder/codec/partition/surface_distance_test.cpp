@@ -41,7 +41,7 @@ TEST(SurfaceLengths, AreLongAcrossConcaveCreases) {
   const double flat = length(graph, of_valley, middle - 5, middle - 4);
   const double concave = length(graph, of_valley, middle - 1, middle);
   EXPECT_GT(concave, 50 * flat);
-  // Relative to their means, which the fold determines, both are alike: compare a sheet with
+  // Relative to their means, which the fold determines, both are alike, so compare a sheet with
   // both.
   PartitionScene both;
   both.add_grid(41, 5);

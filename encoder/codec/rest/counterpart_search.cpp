@@ -87,7 +87,7 @@ bool CounterpartSearch::has_shape_of(std::uint32_t v, const Hinge& own, const En
          near(own.c, own.a, other.c, other.a) && near(own.c, own.b, other.c, other.b);
 }
 
-// In steps.
+// Returns the error in steps.
 double CounterpartSearch::error_of(std::uint32_t v, const HingePairs& pairs) {
   --allowance_;
   RestAxes axes;
@@ -100,7 +100,7 @@ double CounterpartSearch::error_of(std::uint32_t v, const HingePairs& pairs) {
   return std::sqrt(sum) / step_;
 }
 
-// The bits that vertices after v save if they inherit from it.
+// Returns the bits that vertices after v save if they inherit from it.
 double CounterpartSearch::growth(std::uint32_t v, const HingePairs& pairs,
                                  const Counterparts& counterparts) {
   std::vector<std::uint32_t> changed;

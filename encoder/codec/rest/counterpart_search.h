@@ -27,10 +27,10 @@ class CounterpartSearch {
     Counterpart choice;
     double gain = 0.0;  // estimate of the bits that it saves at later vertices
   };
-  // The best new counterpart of v, if there is one. Takes a bounded time on average: after a
-  // long search, none is found for some vertices.
+  // Returns the best new counterpart of v, if there is one. Takes a bounded time on average:
+  // after a long search, none is found for some vertices.
   std::optional<Found> find(std::uint32_t v, const Counterparts& counterparts);
-  // After the search at v, once it has been coded.
+  // Adds v, once it has been coded, after the search at v.
   void add(std::uint32_t v);
 
  private:
@@ -59,8 +59,8 @@ class CounterpartSearch {
   ListOfLists<std::uint32_t> dependents_;  // [v]: vertices with v in a hinge
   std::unordered_map<std::uint64_t, std::vector<Entry>> cells_;
   std::uint32_t num_listed_ = 0;
-  std::int64_t allowance_ = 0;  // predictions that may be made; may fall below 0
-  // Of growth(), kNone in between:
+  std::int64_t allowance_ = 0;  // number of predictions that may be made; may fall below 0
+  // Work space of growth(); kNone between calls.
   std::vector<std::uint32_t> assumed_;  // [num_vertices]
   std::vector<std::uint8_t> seen_;      // [num_vertices]
 };

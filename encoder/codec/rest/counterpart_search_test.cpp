@@ -16,7 +16,7 @@ constexpr std::uint32_t kWidth = 40;
 constexpr std::uint32_t kStep = 24;
 constexpr int kPositionBits = 20;
 
-// A smooth sheet: all its squares have nearly the same shape.
+// A smooth sheet, whose squares all have nearly the same shape.
 struct Sheet {
   std::vector<Triangle> triangles;
   std::vector<std::int32_t> wanted;

@@ -35,8 +35,8 @@ class CountingSection {
 
 constexpr int kSettingsBits = 2 * kRestWeightBits + 2;  // fixed: format
 
-// D + lambda R, in squared steps. An error of a rest position shows in every frame, and its
-// step is finer by the square root of their number, so that both cancel out.
+// Returns D + lambda R, in squared steps. An error of a rest position shows in every frame, and
+// its step is finer by the square root of their number, so that both cancel out.
 double cost_of(std::span<const std::int32_t> wanted, std::span<const std::int32_t> values,
                double step, double bits) {
   double square = 0.0;
@@ -48,13 +48,13 @@ double cost_of(std::span<const std::int32_t> wanted, std::span<const std::int32_
 }
 
 // tuned: The weights that are tried: parallelograms alone, for regular and artificial meshes;
-// and between these and the ring, more or less smooth. Others are hardly ever better by 1 %.
+// and between these and the ring, more or less smooth. Others are seldom better by 1 %.
 constexpr std::array<RestSettings, 4> kWeights{{{false, true, 16, 0, true, false},
                                                 {false, true, 10, 24, true, false},
                                                 {false, true, 10, 36, true, false},
                                                 {false, true, 12, 16, true, false}}};
 
-// The nearest residual of the vertex that `recon` is at.
+// Returns the nearest residual of the vertex that `recon` is at.
 Vec3i nearest_residual(const RestRecon& recon, const std::int32_t* wanted, double step) {
   constexpr double kMost = static_cast<double>(kMaxResidual);       // fixed: format
   constexpr double kAxisUnit = 1.0 / static_cast<double>(1 << 30);  // fixed: format
@@ -114,7 +114,7 @@ class RestCoder {
   }
 
  private:
-  // The bits of v as it would be coded.
+  // Returns the bits of v as it would be coded.
   double bits_of(std::uint32_t v, const Counterpart& choice, const HingePairs* pairs) {
     CountingSection<BitEstimate> estimate;
     writer_.estimate_counterpart(estimate, choice);
@@ -137,7 +137,7 @@ class RestCoder {
         choice = inherited;
       }
     }
-    // What is inherited can be inherited further: a new one gains nothing.
+    // An inherited counterpart can be inherited further: a new one gains nothing.
     const auto found = choice.flag ? std::nullopt : search_->find(v, counterparts);
     if (found) {
       const HingePairs pairs = counterparts.new_pairs(found->choice);

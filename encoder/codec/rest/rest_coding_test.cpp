@@ -20,7 +20,7 @@ constexpr std::uint32_t kHeight = 20;
 constexpr int kPositionBits = 20;
 constexpr std::uint32_t kStep = 24;
 
-// A bumpy sheet of random heights, and beside it another: the same mirrored and turned, or one
+// A bumpy sheet of random heights, and next to it another: the same mirrored and turned, or one
 // of other heights.
 struct TwoSheets {
   std::vector<Triangle> triangles;
@@ -111,7 +111,7 @@ TEST(RestCoding, ValuesAreWithinHalfAStepAsDecoded) {
       for (std::size_t c = 0; c < 3; ++c) {
         square += std::pow(decoded[3 * v + c] - sheets.wanted[3 * v + c], 2);
       }
-      // Half a step on each axis, and rounding to a sixteenth.
+      // The error is half a step on each axis, and rounding to a sixteenth.
       EXPECT_LT(std::sqrt(square), std::sqrt(3.0) * (kStep / 2.0 + 1.0));
     }
   }

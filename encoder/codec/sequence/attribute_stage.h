@@ -1,4 +1,4 @@
-// Codes the attributes of a source when its first frame has been decoded.
+// Codes the attributes of a source once its first frame has been decoded.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,19 @@ namespace rlpc {
 
 class AttributeStage {
  public:
-  // triangles: of the source. is_animated: the sequence has, or may have, several frames. Keeps
-  // references to source and connectivity.
+  // triangles: in the order of the source. is_animated: the sequence has, or may have, several
+  // frames. Keeps references to source and connectivity.
   AttributeStage(const SourceAttributes& source, std::span<const Triangle> triangles,
                  const EncoderSettings& settings, const ConnectivityCode& connectivity,
                  bool is_animated = true);
 
   bool has_sets() const { return !source_.sets.empty() && !settings_.dropped; }
-  // The frames that encode() uses, ascending; none without sets.
+  // Returns the frames that encode() uses, ascending; none without sets.
   std::vector<std::uint32_t> frames() const;
   // Replaces the attribute unit of the stream. decoded: the first frame, and perhaps others of
-  // frames(); to be called again if they have changed.
+  // frames(); call it again if they have changed.
   void encode(std::span<const DecodedFrame> decoded, StreamAssembly& stream);
-  // Of the last call.
+  // Returns the reports of the last encode().
   const std::vector<AttributeReport>& reports() const { return reports_; }
 
  private:

@@ -1,4 +1,4 @@
-// What FrameEncoder refuses.
+// Checks the input of FrameEncoder.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 namespace rlpc {
 
 std::optional<InputError> check_format(const FrameFormat& format);
-// The frame that follows num_added others; xyz and exact: as of FrameEncoder::add_frame().
+// Checks the frame that follows num_added others; xyz, exact: as in FrameEncoder::add_frame().
 std::optional<InputError> check_frame(const FrameFormat& format, std::uint32_t num_added,
                                       std::span<const float> xyz,
                                       std::span<const double> exact);
-// When the stream is to end.
+// Checks whether the stream may end.
 std::optional<InputError> check_count(const FrameFormat& format, std::uint32_t num_added);
 
 }  // namespace rlpc

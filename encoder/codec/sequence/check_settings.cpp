@@ -13,7 +13,7 @@ namespace rlpc {
 namespace {
 
 struct Parameter {
-  const char* option;  // of rlpcenc
+  const char* option;  // name in rlpcenc
   bool given;          // differs from the default
 };
 
@@ -53,7 +53,7 @@ std::vector<Parameter> parameters(const MainTools& tools) {
           {"--layer-groups", layer_groups != defaults.layer_groups}};
 }
 
-// Those that the Main profile does not have.
+// Returns the parameters that the Main profile does not have.
 std::vector<Parameter> parameters_of_high(const MainTools& tools) {
   const MainTools defaults;
   return {{"--adaptive-factors", tools.adaptive_factors != defaults.adaptive_factors},
@@ -281,7 +281,7 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
                       " track levels, there are 1 to " + std::to_string(most_layers) +
                       " temporal layers (--temporal-layers)"};
   }
-  // The most bones of a vertex none of whose bones is a candidate (6.12.2).
+  // A vertex none of whose bones is a candidate has at most these (6.12.2).
   if (s.main.influences > kMaxExtraBones) {
     return InputError{"a vertex follows at most " + std::to_string(kMaxExtraBones) +
                       " bones (--influences)"};

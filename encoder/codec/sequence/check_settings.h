@@ -11,12 +11,12 @@
 
 namespace rlpc {
 
-// Why the settings cannot be used, naming the option of rlpcenc for the setting at fault; none
-// if they are valid.
+// Returns why the settings cannot be used, naming the option of rlpcenc for the setting at
+// fault; none if they are valid.
 std::optional<InputError> check_settings(const EncoderSettings& settings);
-// Likewise of the clips of a sequence of so many frames; kMaxFrames if that is not known.
+// Returns why the clips cannot be used. num_frames: kMaxFrames if not known.
 std::optional<InputError> check_clips(std::span<const Clip> clips, std::uint32_t num_frames);
-// Why attributes cannot be coded; none if they can, or are to be dropped.
+// Returns why attributes cannot be coded; none if they can, or are to be dropped.
 std::optional<InputError> check_attributes(const AttributeSettings& settings,
                                            const SourceAttributes& attributes);
 

@@ -20,7 +20,7 @@ SequenceHeader header_of(const FrameFormat& format, const EncoderSettings& setti
 
 void set_grid_of_box(SequenceHeader& header, const FrameFormat& format, const Target& target,
                      double finest_error) {
-  // The finer grid keeps steps far below their maximum, too.
+  // The finer grid also keeps steps far below their maximum.
   constexpr double kReserve = 16.0;  // fixed: four bits of the grid
   Extent extent;
   std::copy_n(format.box_min.begin(), 3, extent.min.begin());

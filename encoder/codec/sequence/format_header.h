@@ -7,7 +7,7 @@
 
 namespace rlpc {
 
-// Without a level and a grid. The format and the settings have been checked.
+// Returns the header without level and grid. The format and the settings have been checked.
 SequenceHeader header_of(const FrameFormat& format, const EncoderSettings& settings);
 
 // Sets the grid for all coordinates in the box of the format. finest_error: the RMS error, in

@@ -18,7 +18,7 @@ class FrameBackend {
   FrameBackend& operator=(const FrameBackend&) = delete;
   virtual ~FrameBackend() = default;
 
-  // Before the first frame; the format and the settings have been checked.
+  // Prepares for the first frame; the format and the settings have been checked.
   virtual std::optional<InputError> prepare() = 0;
   virtual std::optional<InputError> add_frame(std::span<const float> xyz,
                                               std::span<const double> exact) = 0;

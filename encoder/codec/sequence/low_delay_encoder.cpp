@@ -41,13 +41,13 @@ std::optional<InputError> LowDelayEncoder::prepare() {
   SequenceHeader header = header_of(format_, settings_);
   const std::uint32_t longest =
       std::min(longest_gof(settings_, format_.num_vertices), header.num_frames);
-  // Of a GOF, one frame is held.
+  // Only one frame of a GOF is held.
   const auto threads = check_memory(settings_, header, 1, 0, {});
   if (!threads) return threads.error();
   num_threads_ = std::clamp(settings_.threads, 1U, kMaxEncoderThreads);
   if (auto error = choose_level(header, longest, format_.least_level)) return error;
   coding_.emplace(header, settings_, format_.triangles);
-  // They are written before the first frame is coded.
+  // Attributes are written before the first frame is coded.
   settings_.attributes.from_positions = false;
   attributes_.emplace(format_.attributes, format_.triangles, settings_, coding_->connectivity(),
                       header.num_frames != 1);
@@ -76,15 +76,16 @@ std::optional<InputError> LowDelayEncoder::begin_stream(std::span<const float> x
 std::uint32_t LowDelayEncoder::frames_in_gof() const {
   const std::uint32_t left = coding_->header().num_frames - num_added_;
   const std::uint32_t longest = std::min(longest_gof(settings_, format_.num_vertices), left);
-  // GOFs of about the same length, if the number of frames is known.
+  // GOFs have about the same length if the number of frames is known.
   if (coding_->header().open_end_flag) return longest;
   const std::uint32_t gofs = (left + longest - 1) / longest;
   return (left + gofs - 1) / gofs;
 }
 
-// A largest error is that of the numbers which floats are rounded from: these may add theirs.
+// Reduces a maximum error, which is measured from the input's numbers, by the rounding to
+// floats.
 Target LowDelayEncoder::target_for_floats() const {
-  constexpr double kLeast = 1e-30;  // fixed: out of reach, as what is left is not positive
+  constexpr double kLeast = 1e-30;  // fixed: out of reach, if nothing positive is left
   Target target = settings_.target;
   if (target.kind == Target::kMaxError) {
     target.value = std::max(target.value - format_.max_rounding, kLeast);
@@ -92,7 +93,8 @@ Target LowDelayEncoder::target_for_floats() const {
   return target;
 }
 
-// Grid steps. rms_spread: RMS of the coordinates about the mean of their frame, units.
+// Returns the step, in grid steps. rms_spread: RMS of the coordinates about the mean of their
+// frame, units.
 double LowDelayEncoder::step_for(double rms_spread) const {
   const double per_unit = exact_exp2(-coding_->header().grid.log2_step);
   const Target target = target_for_floats();
@@ -111,7 +113,8 @@ std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz)
   const auto extent = measure_extent(frame);
   if (!extent) return extent.error();
   const OrderedMesh& layers = (*meshes_)[Prediction::kLayers];
-  // That of all frames so far, which the KG error is relative to; at first, that of this one.
+  // Use the spread of all frames so far, which the KG error is relative to; at first, that of
+  // this frame.
   double spread = extent->rms_spread;
   if (num_added_ > 0) {
     const Metrics so_far = metrics_.result();
@@ -137,7 +140,7 @@ std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz)
   return std::nullopt;
 }
 
-// Patches, if they are wanted, are made from the first frame: no motion is known yet.
+// Makes patches, if wanted, from the first frame: no motion is known yet.
 std::optional<InputError> LowDelayEncoder::divide(std::span<const float> xyz) {
   const std::uint32_t count = settings_.inter.patches.value_or(0);
   if (count == 0) return std::nullopt;
@@ -210,8 +213,7 @@ void LowDelayEncoder::end_gof() {
   gof_.reset();
 }
 
-// Frames of an open-ended stream can be decoded one by one, those of another when their GOF is
-// complete.
+// Verifies frames: those of an open-ended stream one by one, others when their GOF is complete.
 std::optional<InputError> LowDelayEncoder::verify() {
   if (gof_ && !coding_->header().open_end_flag) return std::nullopt;
   return out_.verifier(coding_->header(), coding_->connectivity(), num_threads_)

@@ -19,7 +19,7 @@
 
 namespace rlpc {
 
-// There is no search: the step of a GOF follows from the target, and from the ratio of error to
+// Searches for nothing: the step of a GOF follows from the target and the ratio of error to
 // step so far.
 class LowDelayEncoder final : public FrameBackend {
  public:
@@ -36,7 +36,7 @@ class LowDelayEncoder final : public FrameBackend {
   struct Gof {
     InterSettings settings;
     std::optional<ClosedLoop> coding;  // refers to the settings
-    std::uint32_t announced = 0;       // frames
+    std::uint32_t announced = 0;       // number of frames
     std::uint32_t coded = 0;
     std::vector<double> before;  // the frame before, grid units
     // The first frame until it is coded, if it has an order of its own.
@@ -63,15 +63,15 @@ class LowDelayEncoder final : public FrameBackend {
   EncoderSettings settings_;
   ByteSink sink_;
   VerifiedOutput out_;
-  ByteSink keep_;  // adds bytes to it
+  ByteSink keep_;  // adds bytes to out_
   std::uint32_t num_threads_ = 1;
   std::optional<SequenceCoding> coding_;
   std::optional<OrderedMeshes> meshes_;
-  std::optional<StreamAssembly> stream_;  // from the first frame on
+  std::optional<StreamAssembly> stream_;  // none before the first frame
   std::optional<AttributeStage> attributes_;
   std::unique_ptr<Gof> gof_;
   std::uint32_t num_added_ = 0;
-  double step_ = 0.0;         // of the last GOF, grid steps
+  double step_ = 0.0;         // step of the last GOF, grid steps
   double error_ratio_ = 0.0;  // RMS error of a coordinate over the step; 0: not known
   MetricsAccumulator metrics_;
   std::optional<InputError> failure_;

@@ -11,14 +11,14 @@ namespace rlpc {
 
 namespace {
 
-// Per position of the span being coded. Measured with random motion, which needs all
+// Bytes per position of the span being coded. Measured with random motion, which needs all
 // components: 110 (Baseline) to 185 (Main). Real motion needs 40.
 constexpr std::uint64_t kBytesOfPosition = 190;  // fixed: memory
-// Of a shared rig that later spans may use: factors of two or four bytes, of at most three
-// trajectories for each frame.
+// Bytes per position of a shared rig that later spans may use: factors of two or four bytes, of
+// at most three trajectories for each frame.
 constexpr std::uint64_t kFactorsOfRig = 12;  // fixed: memory
 
-// Frames that can be coded at once.
+// Returns the number of frames that can be coded at once.
 std::uint64_t frames_in_memory(const EncoderSettings& settings, std::uint32_t num_vertices,
                                std::uint64_t bytes_of_position) {
   constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 26;  // fixed: memory
@@ -28,8 +28,8 @@ std::uint64_t frames_in_memory(const EncoderSettings& settings, std::uint32_t nu
   return std::min<std::uint64_t>(positions / num_vertices, kMaxFrames);
 }
 
-// Per vertex, what the encodings of an inter GOF that are compared hold: positions, as
-// doubles and floats and decoded, and what each encoding learns.
+// Returns the bytes per vertex of the encodings of an inter GOF that are compared: positions,
+// as doubles, as floats and decoded, and the filters of each encoding.
 std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHeader& header,
                               std::uint32_t num_frames) {
   constexpr std::uint64_t kOfFrame = 36;     // fixed: memory; without decoded positions
@@ -52,7 +52,7 @@ std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHea
 
 struct MemoryNeed {
   std::uint64_t with_one_thread = 0;
-  std::uint64_t of_thread = 0;  // of each further one
+  std::uint64_t of_thread = 0;  // bytes of each further thread
 };
 
 MemoryNeed memory_need(const EncoderSettings& settings, const SequenceHeader& header,
@@ -109,9 +109,9 @@ std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader
         longest, frames_in_memory(settings, header.num_vertices, bytes_of_position)));
   };
   std::uint32_t span = frames(kBytesOfPosition);
-  // With several spans, there are two shared rigs besides: one in force and a new one.
+  // With several spans, there are also two shared rigs: one in force and a new one.
   if (header.num_frames > span) span = frames(kBytesOfPosition + 2 * kFactorsOfRig);
-  // What does not grow with the span may need more than the other half of the limit.
+  // Memory that does not grow with the span may need more than the other half of the limit.
   const auto fits = [&] {
     return memory_need(settings, header, std::min(span, header.num_frames), 0, source)
                .with_one_thread <= settings.max_memory_bytes;

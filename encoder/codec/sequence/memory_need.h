@@ -1,4 +1,4 @@
-// How many frames are encoded at a time, and the memory that they need.
+// Number of frames that are encoded at a time, and the memory that they need.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace rlpc {
 inline constexpr std::uint32_t kDefaultGofFrames = 128;  // fixed: how far a seek decodes
 // With shared rigs, a seek only parses the tracks of a GOF, some milliseconds. Compared with
 // a single GOF, this length takes up to 6 % more bytes (morph-stress), half of it up to 12 %,
-// at a KG error of 0.1 %; sequences of twice the length were not at hand.
+// at a KG error of 0.1 %; sequences of twice the length were not available.
 inline constexpr std::uint32_t kDefaultTrackFrames = 256;  // fixed: how far a seek parses
 
 // Several clips of one character: each GOF of the Main profile repeats its shape. kB with GOFs
@@ -21,9 +21,9 @@ inline constexpr std::uint32_t kDefaultTrackFrames = 256;  // fixed: how far a s
 // 2818 frames as one GOF takes 60 ms more than into 512; in GOFs of 128, it takes 563 kB.
 inline constexpr std::uint32_t kClipFrames = kLevels[2].max_gof_frames;  // fixed: level 3
 
-// Maximum frames per GOF under the settings.
+// Returns the maximum number of frames per GOF under the settings.
 std::uint32_t longest_gof(const EncoderSettings& settings, std::uint32_t num_vertices);
-// Maximum frames per GOF of a sequence of which all frames are known: where these are more than
+// Returns the same for a sequence of which all frames are known: if it is more than
 // longest_gof(), choose_longest_gof() decides.
 std::uint32_t longest_gof_of_all(const EncoderSettings& settings, std::uint32_t num_vertices);
 // Memory that the source of an encoding holds.
@@ -32,14 +32,14 @@ struct SourceMemory {
   std::uint64_t bytes_of_position = 0;  // for each vertex and frame of the longest span
 };
 
-// Maximum frames per span: in the High profile, those of GOFs that share a shared rig, as
-// many as memory allows.
+// Returns the maximum number of frames per span: in the High profile, the GOFs that can use one
+// shared rig, as many as memory allows.
 std::uint32_t longest_span(const EncoderSettings& settings, const SequenceHeader& header,
                            const SourceMemory& source);
 
-// The threads of the settings, or as many as their memory limit suffices for. Error: one may
-// need more. span_frames: of the longest span; kept_frames: number of frames whose analyses
-// stay in memory.
+// Returns the threads of the settings, or as many as their memory limit allows. Error: even one
+// may need more. span_frames: length of the longest span; kept_frames: number of frames whose
+// analyses stay in memory.
 InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
                                         const SequenceHeader& header, std::uint32_t span_frames,
                                         std::uint32_t kept_frames, const SourceMemory& source);

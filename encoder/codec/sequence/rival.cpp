@@ -14,8 +14,8 @@ struct Frames {
   std::uint32_t end = 0;
 };
 
-// The bytes that a stream spends on some frames. Those of a GOF, and those of a shared rig,
-// are shared by their frames alike.
+// Returns the bytes that a stream spends on some frames. Bytes of a GOF, and of a shared rig,
+// are divided equally among their frames.
 double bytes_of(const BatchTrial& trial, const Frames& frames) {
   const auto part_of = [&](std::uint32_t first, std::uint32_t count) {
     const std::uint32_t from = std::max(first, frames.first);
@@ -38,7 +38,7 @@ double bytes_of(const BatchTrial& trial, const Frames& frames) {
   return bytes;
 }
 
-// The squared error of some frames, in the measure of the target.
+// Returns the squared error of some frames, in the measure of the target.
 double error_of(const Target& target, const Metrics& metrics, const Frames& frames) {
   double sum = 0.0;
   double largest = 0.0;
@@ -67,8 +67,8 @@ bool Rival::is_out_of_reach(const BatchTrial& trial, std::uint32_t first, double
 }
 
 bool Rival::has_high_rank() const {
-  // fixed: As where inter GOFs are tried (kManyTrajectories); some fewer, as not all that
-  // are expected are coded.
+  // fixed: Like kManyTrajectories, from which inter GOFs are tried, but lower, as not all
+  // expected trajectories are coded.
   constexpr double kMany = 0.2;
   return std::any_of(best_.spans.begin(), best_.spans.end(), [&](const SpanResult& span) {
     std::uint32_t num_frames = 0;

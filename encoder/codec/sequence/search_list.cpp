@@ -7,8 +7,8 @@
 namespace rlpc {
 namespace {
 
-// The searches with the profile of the settings. With preset slow, one GOF may also be worse
-// than several.
+// Returns the searches with the profile of the settings. With preset slow, one GOF may also be
+// worse than several.
 std::vector<EncoderSettings> searches_of_profile(const EncoderSettings& settings,
                                                  std::uint32_t num_vertices,
                                                  std::uint32_t num_frames) {
@@ -37,7 +37,7 @@ bool is_free(const EncoderSettings& settings) {
 
 std::vector<Search> list_searches(const EncoderSettings& settings, std::uint32_t num_vertices,
                                   std::uint32_t num_frames) {
-  // fixed: of the time, about, in usual searches; others are mostly not begun.
+  // fixed: relative time of usual searches, about; most others are not begun.
   constexpr double kSlowPart = 3.0;
   std::vector<Search> list;
   EncoderSettings of_profile = settings;

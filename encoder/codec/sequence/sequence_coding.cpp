@@ -16,7 +16,7 @@ namespace rlpc {
 
 namespace {
 
-// The triangles of the input by the indices of decoded vertices.
+// Returns the triangles of the input with the indices of decoded vertices.
 std::vector<Triangle> renumber(std::span<const Triangle> triangles,
                                const std::vector<std::uint32_t>& input_vertex) {
   std::vector<std::uint32_t> decoded_vertex(input_vertex.size());
@@ -156,7 +156,7 @@ InputResult<std::vector<Bytes>> SequenceCoding::measure(const SharedSource& sour
   return hash_units;
 }
 
-// Positions as floats, in the order of the input.
+// Writes positions as floats, in the order of the input.
 void SequenceCoding::to_input(std::span<const std::int32_t> positions,
                               std::span<float> decoded) const {
   for (std::size_t v = 0; v < header_.num_vertices; ++v) {

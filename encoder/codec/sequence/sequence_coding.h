@@ -29,7 +29,7 @@ struct SharedSource {
   FrameSource& source;
   std::mutex& reading;
 
-  // As the numbers of the input, which errors are measured against.
+  // Reads the numbers of the input, which errors are measured against.
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<double> xyz) const {
     const std::lock_guard lock(reading);
     return source.read_exact(frame, xyz);
@@ -39,8 +39,8 @@ struct SharedSource {
 class SequenceCoding {
  public:
   // Keeps a reference to the settings. All vertex indices must be below num_vertices. The
-  // profile of the settings says which tools are tried; that of the header, which includes it,
-  // how they are written.
+  // profile of the settings decides which tools are tried; the profile of the header, which
+  // includes it, decides how they are written.
   SequenceCoding(const SequenceHeader& header, const EncoderSettings& settings,
                  std::span<const Triangle> triangles);
   SequenceCoding(const SequenceCoding&) = delete;
@@ -49,15 +49,15 @@ class SequenceCoding {
   const SequenceHeader& header() const { return header_; }
   const ConnectivityCode& connectivity() const { return connectivity_; }
   const SequenceMesh& mesh() const { return mesh_; }
-  // The header may change in level and grid only. A new grid invalidates all frames and coders
+  // Changes the header, but only level and grid. A new grid invalidates all frames and coders
   // made before.
   void set_header(const SequenceHeader& header) { header_ = header; }
 
-  // Frames of the source, as positions on the grid in decoded order.
+  // Returns frames of the source, as positions on the grid in decoded order.
   InputResult<std::vector<DecodedFrame>> nearest_frames(
       FrameSource& source, std::span<const std::uint32_t> numbers) const;
-  // The frames of a span, in decoded vertex order and grid units; span: frames of the source.
-  // Errors: those of the source.
+  // Returns the frames of a span, in decoded vertex order and grid units. span: frames of the
+  // source. Errors: errors of the source.
   InputResult<SpanFrames> read_frames(FrameSource& source, const FrameRange& span) const;
   // Whether there is a further kind of GOF, for targets that the compared kinds miss.
   bool has_last_resort() const { return last_resort_ != nullptr; }
@@ -65,14 +65,14 @@ class SequenceCoding {
   std::unique_ptr<SpanCoder> make_coder(const SpanFrames& frames, bool is_last_resort) const;
   // Whether spans can use shared rigs of earlier ones.
   bool has_rigs() const { return settings_.profile == Profile::kHigh; }
-  // KindEncoder::encode_with(), by the kind that has shared rigs.
+  // Calls KindEncoder::encode_with() of the kind that has shared rigs.
   std::optional<EncodedSpan> encode_with(const KeptRig& rig, const SpanFrames& frames,
                                          double step, double most) const;
-  // Whether the target is the largest error.
+  // Whether the target is a maximum error.
   bool has_largest_error() const { return settings_.target.kind == Target::kMaxError; }
   // Decodes the span as a decoder would and adds its errors against the source to the metrics;
   // if these have no frames so far, they follow the frame before the span. Returns the hash
-  // unit of each GOF; empty if hashes are off. Errors: those of the source.
+  // unit of each GOF; empty if hashes are off. Errors: errors of the source.
   InputResult<std::vector<Bytes>> measure(const SharedSource& source, const FrameRange& span,
                                           const DecodeFrame& decode,
                                           MetricsAccumulator& metrics) const;
@@ -100,7 +100,7 @@ class SequenceCoding {
   std::unique_ptr<KindEncoder> last_resort_;
 };
 
-// The units of the GOFs of a coded span as bytes of a stream, without hashes.
+// Returns the units of the GOFs of a coded span as bytes of a stream, without hashes.
 std::vector<GofBytes> write_gof_units(const EncodedSpan& encoded, const FrameRange& span,
                                       bool is_open_ended);
 

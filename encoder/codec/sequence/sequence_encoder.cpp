@@ -27,8 +27,8 @@ bool keeps_analyses(const SequenceHeader& header) {
          kKeepBytes;
 }
 
-// Spans that are encoded at the same time: one for each thread, but no more positions than
-// this, as each is held with what it is made into. Threads also share a single span.
+// Limit of the positions of spans that are encoded at the same time, one span for each thread,
+// as each is held with its results. Threads also share a single span.
 constexpr std::uint64_t kPositionsTogether = std::uint64_t{1} << 25;  // fixed: memory
 
 std::uint32_t spans_together(const SequenceHeader& header, std::uint32_t longest,
@@ -38,15 +38,15 @@ std::uint32_t spans_together(const SequenceHeader& header, std::uint32_t longest
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, num_threads));
 }
 
-// When a search that another profile contains may end before it has reached the target.
+// Time at which the search of a contained profile may end before it has reached the target.
 enum class GivingUp { kNever, kAfterEncoding, kAfterSample };
 
 // Searches that take a second or two first encode all GOFs: the sample, whose clusters are not
-// searched, can take several times what the search finds. Those that take some tenths of a
-// second are never given up: where streams have few bytes, sizes and errors jump from one step
-// to the next.
+// searched, can take several times the bytes that the search finds. Those that take some tenths
+// of a second are never given up: where streams have few bytes, sizes and errors jump from one
+// step to the next.
 GivingUp giving_up(const SequenceHeader& header) {
-  // Vertices of all frames.
+  // Numbers of vertices of all frames together.
   constexpr std::uint64_t kSmall = std::uint64_t{1} << 15;   // fixed: time
   constexpr std::uint64_t kMedium = std::uint64_t{1} << 18;  // fixed: time
   const std::uint64_t count = std::uint64_t{header.num_vertices} * header.num_frames;
@@ -54,7 +54,7 @@ GivingUp giving_up(const SequenceHeader& header) {
   return count <= kMedium ? GivingUp::kAfterEncoding : GivingUp::kAfterSample;
 }
 
-// The decoded frames that attributes refer to.
+// Returns the decoded frames that attributes refer to.
 std::vector<DecodedFrame> kept_frames(const BatchTrial& trial) {
   std::vector<DecodedFrame> frames;
   for (const SpanResult& span : trial.spans) {
@@ -90,7 +90,8 @@ std::optional<InputError> SequenceEncoder::prepare() {
   attributes_.emplace(source_.attributes(), source_.triangles(), settings_,
                       coding_->connectivity(), header.num_frames > 1);
   if (attributes_->has_sets()) {
-    // Their size is part of the rate; it hardly depends on the error of the first frame.
+    // The size of attributes is part of the rate; it barely depends on the error of the first
+    // frame.
     if (settings_.target.kind == Target::kBpvf) {
       auto frames = coding_->nearest_frames(source_, attributes_->frames());
       if (!frames) return frames.error();
@@ -100,7 +101,7 @@ std::optional<InputError> SequenceEncoder::prepare() {
   return std::nullopt;
 }
 
-// What is chosen before memory is allotted: the grid, and how long GOFs may be.
+// Chooses, before memory is allotted, the grid and the maximum length of GOFs.
 std::optional<InputError> SequenceEncoder::survey(SequenceHeader& header) {
   const ThreadPool::Use use(*threads_);
   const auto extent = measure_extent(source_);
@@ -127,7 +128,7 @@ std::uint32_t SequenceEncoder::longest_span_of(const SequenceHeader& header) con
              : longest_gof_;
 }
 
-// In the unit of the coordinates.
+// Returns the likely step, in the unit of the coordinates.
 double SequenceEncoder::likely_step(const SequenceHeader& header) const {
   return search_for(settings_, header, extent_.rms_spread).step() *
          exact_exp2(header.grid.log2_step);
@@ -145,14 +146,14 @@ std::optional<InputError> SequenceEncoder::lengthen_gofs(const SequenceHeader& h
   return allot_memory(header);
 }
 
-// Analyses are kept if there is memory for them.
+// Allots memory: analyses are kept if there is room for them.
 std::optional<InputError> SequenceEncoder::allot_memory(const SequenceHeader& header) {
   const std::uint32_t largest = std::min(longest_span_of(header), header.num_frames);
   const auto threads = [&](bool keeps) {
     return check_memory(settings_, header, largest, keeps ? header.num_frames : 0,
                         {source_.memory_bytes()});
   };
-  // What the cuts are measured from is smaller than an analysis.
+  // The data for measuring cuts is smaller than an analysis.
   const bool keeps_cuts = settings_.temporal_layers() > 1;
   keeps_analyses_ = keeps_analyses(header);
   auto found = threads(keeps_analyses_ || keeps_cuts);
@@ -189,7 +190,8 @@ void SequenceEncoder::use_grid(const GridChoice& grid) {
   stream_.emplace(header, settings_, coding_->connectivity());
 }
 
-// The number of trials is unknown, so each trial counts for half of the remaining progress.
+// Shows the progress: the number of trials is unknown, so each counts for half of the
+// remainder.
 void SequenceEncoder::show_progress(std::uint32_t trial, double done) const {
   if (!progress_) return;
   progress_(settings_.target.has_search()
@@ -205,19 +207,19 @@ TargetTask SequenceEncoder::task(const EncoderSettings& settings) const {
           .progress = [this](std::uint32_t trial, double done) { show_progress(trial, done); }};
 }
 
-// Whether the search has no prospect, from a first encoding of a sample of the spans with the
+// Whether the search is hopeless, judged by a first encoding of a sample of the spans with the
 // fast preset.
 InputResult<bool> SequenceEncoder::is_hopeless(const Rival& rival) {
   // tuned (off: 1): A search is not begun where a sample takes more bytes than the best result,
   // at equal error, by this factor.
   constexpr double kFarLow = 1.6;
-  // tuned (off: 1): The same where ranks are high: the number of clusters then counts for most,
-  // and the fast preset, with which the sample is encoded, does not search it.
+  // tuned (off: 1): The same for high ranks: the number of clusters then matters most, and the
+  // fast preset, with which the sample is encoded, does not search it.
   constexpr double kFarHigh = 3.0;
   constexpr std::size_t kPart = 4;  // fixed: a quarter of the spans, but at least one
   const SequenceHeader& header = coding_->header();
-  // The High profile has all tools of the Main profile, and shares what these repeat. Chance
-  // can be on either side where neither has a good basis.
+  // The High profile has all tools of the Main profile, and shares what these repeat. If
+  // neither has a good basis, either may win by chance.
   if (settings_.profile == Profile::kMain && !rival.has_high_rank()) return true;
   EncoderSettings fast = settings_;
   fast.preset = Preset::kFast;
@@ -247,10 +249,10 @@ InputResult<TargetResult> SequenceEncoder::search(const Rival* rival) {
   return best;
 }
 
-// Bits outside the GOFs that count towards a rate. The index is taken at its largest size for
-// GOFs that meet the target.
+// Returns the bits outside the GOFs that count towards a rate. The index has its largest size
+// for GOFs that meet the target.
 double SequenceEncoder::fixed_bits() const {
-  constexpr double kMostBytes = 0x1p31;  // fixed: of a GOF in an index
+  constexpr double kMostBytes = 0x1p31;  // fixed: largest GOF in an index
   double bits = 8.0 * static_cast<double>(stream_->overhead_bytes()) + reserved_bits_;
   if (settings_.target.kind != Target::kBpvf) return bits;
   std::vector<GofEntry> largest;
@@ -279,10 +281,10 @@ std::uint64_t SequenceEncoder::total_bytes(const TargetResult& result) {
   return report.bytes;
 }
 
-// A rate is that of the whole stream. What a search does not know, the size of attributes that
-// are predicted from the first frame and of shared rigs in the index, is reserved after it.
+// Keeps the whole stream within a rate. After a search, reserves the bits that it does not
+// know: attributes that are predicted from the first frame, and shared rigs in the index.
 std::optional<InputError> SequenceEncoder::keep_to_rate(TargetResult& best) {
-  constexpr int kMostSearches = 3;  // fixed: what is reserved hardly changes
+  constexpr int kMostSearches = 3;  // fixed: reserved bits barely change
   const SequenceHeader& header = coding_->header();
   const double most = settings_.target.value * (1.0 * header.num_vertices) * header.num_frames;
   for (int searches = 0; best.met; ++searches) {
@@ -300,8 +302,8 @@ std::optional<InputError> SequenceEncoder::keep_to_rate(TargetResult& best) {
   return std::nullopt;
 }
 
-// With a rate as the target, the error is known only after the search. If it would have
-// required a finer grid, searches again on that grid and keeps the better result.
+// Searches again on a finer grid, if the error required one, and keeps the better result: with
+// a rate as the target, the error is known only after the search.
 std::optional<InputError> SequenceEncoder::search_on_finer_grid(TargetResult& best) {
   const double error = extent_.rms_spread * best.trial.metrics.kg_error_percent / 100.0;
   const GridChoice grid = choose_grid(extent_, error);
@@ -334,7 +336,7 @@ InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSi
   }
   attributes_->encode(kept_frames(best.trial), *stream_);
   report.attributes = attributes_->reports();
-  // Bytes leave once the whole stream has been verified.
+  // Bytes are passed on once the whole stream has been verified.
   const auto stream = std::make_shared<StreamBuffer>(StreamBuffer::Keep::kAll);
   const ByteSink keep = [&](std::span<const std::uint8_t> bytes) {
     stream->add(bytes);
@@ -371,7 +373,7 @@ std::optional<InputError> SequenceEncoder::verify(const std::shared_ptr<StreamBu
   return check_rules(settings_, attributes_->has_sets(), stream, end_of_first_gof);
 }
 
-// Once, for the stream that was written.
+// Measures the cuts once, for the stream that was written.
 std::optional<InputError> SequenceEncoder::measure_cuts(const BatchTrial& trial,
                                                         EncodeReport& report) {
   const SequenceHeader& header = coding_->header();

@@ -1,4 +1,4 @@
-// One search for the target over a whole sequence, and the stream that it finds.
+// Searches for the target over a whole sequence, and writes the stream.
 #pragma once
 
 #include <cstdint>
@@ -22,18 +22,17 @@ namespace rlpc {
 
 class SequenceEncoder {
  public:
-  // Keeps references to all but the profile. written: that of the stream; it includes the
-  // profile of the settings, which says what is tried.
+  // Keeps references to all but the profile. written: profile of the stream; it includes the
+  // profile of the settings, which decides what is tried.
   SequenceEncoder(FrameSource& source, const EncoderSettings& settings, Profile written,
                   const Progress& progress)
       : source_(source), settings_(settings), written_(written), progress_(progress) {}
 
-  // Searches for the target; write() then writes what was found. rival: what must be beaten;
-  // the search may be given up (TargetResult::given_up), unless the animation is small. null:
-  // none.
+  // Searches for the target; write() then writes the result. rival: result to beat; the search
+  // may be given up (TargetResult::given_up), unless the animation is small. null: no rival.
   InputResult<TargetResult> find(const Rival* rival = nullptr);
   InputResult<EncodeReport> write(TargetResult best, const ByteSink& sink);
-  // The size of the stream that write() would write, but for attributes.
+  // Returns the size of the stream that write() would write, without attributes.
   std::uint64_t bytes_of(const TargetResult& result) const;
 
  private:
@@ -72,7 +71,7 @@ class SequenceEncoder {
   std::optional<StreamAssembly> stream_;
   std::optional<AttributeStage> attributes_;
   std::uint32_t trials_ = 0;    // trials of all searches so far
-  double reserved_bits_ = 0.0;  // that earlier searches for a rate did not know of
+  double reserved_bits_ = 0.0;  // bits that earlier searches for a rate did not know of
 };
 
 }  // namespace rlpc

@@ -16,7 +16,7 @@ namespace {
 std::optional<InputError> for_each_span(
     std::size_t count, const std::function<std::optional<InputError>(std::size_t)>& pass) {
   std::vector<std::optional<InputError>> errors(count);
-  std::atomic<std::size_t> failed = count;  // the lowest so far
+  std::atomic<std::size_t> failed = count;  // lowest failed g so far
   for_each(count, [&](std::size_t g) {
     if (g > failed) return;
     errors[g] = pass(g);
@@ -184,7 +184,7 @@ InputResult<SpanBatch::MeasuredSpan> SpanBatch::encode(Span& span, double step,
   return measured;
 }
 
-// None: it costs at least `most`.
+// Encodes a span with an earlier rig. None: it costs at least `most`.
 InputResult<std::optional<SpanBatch::MeasuredSpan>> SpanBatch::encode_with(const KeptRig& rig,
                                                                            Span& span,
                                                                            double step,
@@ -198,7 +198,7 @@ InputResult<std::optional<SpanBatch::MeasuredSpan>> SpanBatch::encode_with(const
   return std::optional(std::move(*measured));
 }
 
-// At equal step, if its cost is lower.
+// Compares at equal step, by cost.
 bool SpanBatch::is_better(const MeasuredSpan& with_rig, const MeasuredSpan& own) const {
   const std::uint32_t level_idc = coding_.header().level_idc;
   const auto level = [&](const MeasuredSpan& span) {
@@ -227,7 +227,7 @@ std::optional<InputError> SpanBatch::decide(const std::shared_ptr<const KeptRig>
 
 // Encodes some spans. Those with vertices of their own do not depend on others, and come first.
 //
-//   rig  in force before them; then, after them
+//   rig  in force before them; set to the one in force after them
 std::optional<InputError> SpanBatch::encode_some(SpanRange spans, double step,
                                                  double analysis_step,
                                                  std::shared_ptr<const KeptRig>& rig,

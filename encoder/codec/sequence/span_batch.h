@@ -23,39 +23,39 @@ namespace rlpc {
 struct SpanResult {
   std::vector<GofBytes> gofs;
   LevelNeeds needs;
-  std::uint32_t clusters = 0;    // of all GOFs
-  std::uint32_t components = 0;  // of all GOFs
+  std::uint32_t clusters = 0;    // total of all GOFs
+  std::uint32_t components = 0;  // total of all GOFs
   DecodeFrame frame;             // empty unless Options::keep_decoded
-  // The shared rig that it brings; null: none, or Options::keep_decoded is not set.
+  // The new shared rig of the span; null: none, or Options::keep_decoded is not set.
   std::shared_ptr<const KeptRig> rig;
-  DecodeCut cut;                     // of GOFs with one temporal layer: empty
-  std::vector<InterChoice> choices;  // of each inter GOF
+  DecodeCut cut;                     // empty for GOFs with one temporal layer
+  std::vector<InterChoice> choices;  // [inter GOF]
   // Frames of the sequence that Options::kept_frames lists, ascending.
   std::vector<DecodedFrame> kept{};
 };
 
-// Adds what was chosen for GOFs to what was counted before.
+// Adds the choices for GOFs to the counts.
 void count_patterns(const std::vector<InterChoice>& choices, std::vector<PatternCount>& counts);
 
 // All spans of a batch, encoded at one step.
 struct BatchTrial {
   std::vector<SpanResult> spans;
   std::uint64_t gof_bytes = 0;
-  Metrics metrics;  // of all spans together
+  Metrics metrics;  // all spans together
 };
 
 class SpanBatch {
  public:
   struct Options {
     std::uint32_t first_frame = 0;  // position in the stream of frame 0 of the source
-    bool keep_analyses = true;      // from one encode() to the next; choices are always kept
+    bool keep_analyses = true;      // until the next encode(); choices are always kept
     bool keep_decoded = false;      // set SpanResult::frame and rig
-    std::vector<std::uint32_t> kept_frames{};  // of the stream, ascending: SpanResult::kept
+    std::vector<std::uint32_t> kept_frames{};  // frames for SpanResult::kept, ascending
     // The shared rig in force before the batch; null: none.
     std::shared_ptr<const KeptRig> rig = nullptr;
     bool has_followers = false;  // further batches may use the rig in force after it
-    // Spans that are encoded at a time, where later ones may use shared rigs of earlier
-    // ones. Affects memory only.
+    // Number of spans encoded at a time if later ones may use shared rigs of earlier ones.
+    // Affects memory only.
     std::uint32_t together = 1;
     MetricsAccumulator::Keep metrics = MetricsAccumulator::kFrames;
   };
@@ -65,29 +65,29 @@ class SpanBatch {
             const std::vector<FrameRange>& spans, const Options& options);
 
   std::uint32_t num_frames() const;
-  // From now on, encodes all GOFs with the kind reserved for targets that the others miss.
-  // False: there is no such kind.
+  // Encodes all GOFs from now on with the kind reserved for targets that the others miss.
+  // Returns false if there is no such kind.
   bool use_last_resort();
-  // Forgets what was chosen at earlier steps: the next one decides.
+  // Forgets the choices of earlier steps: the next one decides.
   void choose_again();
   // Whether some spans use shared rigs of earlier ones.
   bool uses_earlier_rigs() const;
-  // From now on, each span has a shared rig of its own. False: so it was before.
+  // Gives each span a shared rig of its own from now on. Returns false if all had one before.
   bool use_own_rigs();
-  // Called now and then with the fraction done of the analyses and the encoding that follows;
-  // by any thread, one at a time.
+  // Receives the fraction done of the analyses and the encoding that follows, from time to
+  // time; called by any thread, one at a time.
   using Progress = std::function<void(double)>;
-  // Analyses all GOFs if analyses are kept. Errors: those of the source.
+  // Analyses all GOFs if analyses are kept. Errors: errors of the source.
   std::optional<InputError> analyse(double analysis_step, const Progress& progress = {});
   // Estimates the squared error of all GOFs at a step from their last analyses; empty if any
   // GOF has no estimate.
   std::function<double(double step)> expected_error() const;
-  // Steps as in SpanCoder::encode(). Errors: those of the source.
+  // Encodes all spans. Steps as in SpanCoder::encode(). Errors: errors of the source.
   InputResult<BatchTrial> encode(double step, double analysis_step,
                                  const Progress& progress = {});
 
  private:
-  // Whose vertices a span has: not known before its first encoding.
+  // Owner of the rig whose vertices a span uses; not known before its first encoding.
   enum class Vertices : std::uint8_t { kUndecided, kOwn, kOfEarlier };
 
   struct Span {
@@ -108,7 +108,7 @@ class SpanBatch {
   struct MeasuredSpan {
     SpanResult coded;
     MetricsAccumulator metrics;
-    double cost = 0.0;  // Lagrangian, if it is not decided whose vertices the span has
+    double cost = 0.0;  // Lagrangian; set while Vertices are undecided
   };
   using Measured = std::vector<std::optional<MeasuredSpan>>;  // [span]
   using Rigs = std::vector<std::shared_ptr<const KeptRig>>;

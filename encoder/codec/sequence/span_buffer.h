@@ -19,7 +19,7 @@ class SpanBuffer final : public FrameSource {
     xyz_.reserve(3 * std::size_t{num_vertices} * num_frames);
   }
 
-  // The frames of a span that ends before its buffer is full, all that were added.
+  // All frames added to a span that ends before its buffer is full.
   struct Frames {
     std::uint32_t count = 0;
     std::vector<float> xyz;
@@ -31,7 +31,7 @@ class SpanBuffer final : public FrameSource {
         exact_(std::move(frames.exact)) {}
   Frames take() { return {frames_added(), std::move(xyz_), std::move(exact_)}; }
 
-  // xyz and exact: as of FrameEncoder::add_frame().
+  // xyz, exact: as in FrameEncoder::add_frame().
   void add(std::span<const float> xyz, std::span<const double> exact) {
     const bool has_exact = !exact.empty() || !exact_.empty();
     if (has_exact && exact_.empty()) exact_.assign(xyz_.begin(), xyz_.end());

@@ -22,7 +22,7 @@ constexpr SourceMemory kHeldFrames{.bytes_of_position =
 
 }  // namespace
 
-// Spans of as many GOFs as may be held, all of about the same length.
+// Makes spans of as many GOFs as may be held, all of about the same length.
 void SpanEncoder::make_spans(const SequenceHeader& header) {
   const std::uint32_t of_gof = longest_gof(settings_, header.num_vertices);
   std::uint32_t longest = longest_span(settings_, header, kHeldFrames);
@@ -36,7 +36,7 @@ void SpanEncoder::make_spans(const SequenceHeader& header) {
 
 FrameRange SpanEncoder::current() const {
   if (!is_open_ended()) return spans_[coded_.spans];
-  // All have the same length but the last.
+  // All but the last have the same length.
   const std::uint32_t held = buffer_ ? buffer_->num_frames() : spans_.front().count;
   std::vector<FrameRange> span{{num_added_ - num_held_, held, 1}};
   divide_spans(span, longest_gof(settings_, format_.num_vertices));
@@ -66,13 +66,13 @@ std::optional<InputError> SpanEncoder::prepare() {
   return std::nullopt;
 }
 
-// Bits outside the GOFs, per frame. If the target is a rate, the index is taken at its largest
+// Returns bits outside the GOFs, per frame. If the target is a rate, the index has its largest
 // size for GOFs that meet the target.
 double SpanEncoder::fixed_bits_per_frame() const {
-  constexpr double kMostBytes = 0x1p31;  // fixed: of a GOF in an index
+  constexpr double kMostBytes = 0x1p31;  // fixed: largest GOF in an index
   std::uint64_t bytes = stream_->overhead_bytes();
   if (is_open_ended()) {
-    constexpr std::uint64_t kBytesOfEntry = 8;  // fixed: of a GOF in an index, about
+    constexpr std::uint64_t kBytesOfEntry = 8;  // fixed: about, for a GOF in an index
     const FrameRange span = current();
     const std::uint64_t lead = coded_.spans == 0 ? bytes : 0;
     return 8.0 * static_cast<double>(lead + kBytesOfEntry * span.num_gofs) / span.count;
@@ -142,7 +142,7 @@ InputResult<TargetResult> SpanEncoder::search(const FrameRange& span, double rms
 InputResult<TargetResult> SpanEncoder::search_first(const FrameRange& span, double rms_spread) {
   use_header(header_for(finest_error(settings_.target, rms_spread)));
   if (attributes_->has_sets() && settings_.target.kind == Target::kBpvf) {
-    // Their size is part of the rate.
+    // The size of attributes is part of the rate.
     std::vector<std::uint32_t> held = attributes_->frames();
     std::erase_if(held, [&](std::uint32_t frame) { return frame >= span.count; });
     const auto frames = coding_->nearest_frames(*buffer_, held);
@@ -158,7 +158,7 @@ InputResult<TargetResult> SpanEncoder::search_first(const FrameRange& span, doub
   return search(span, rms_spread);
 }
 
-// Sets the level with a reserve at the first span; error if a later one needs a higher level.
+// Sets the level with a reserve at the first span. Error: a later one needs a higher level.
 std::optional<InputError> SpanEncoder::keep_to_level(const LevelNeeds& needs) {
   const FrameRange span = current();
   SequenceHeader header = coding_->header();

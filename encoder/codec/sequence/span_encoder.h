@@ -45,18 +45,18 @@ class SpanEncoder final : public FrameBackend {
     std::size_t spans = 0;
     double step = 0.0;  // step of the last span, grid steps; 0: none yet
     MetricsAccumulator metrics;
-    std::vector<MetricsAccumulator> cuts;  // to 1 temporal layer and more
+    std::vector<MetricsAccumulator> cuts;  // [temporal layers - 1]
     EncodeReport report;
   };
 
   void make_spans(const SequenceHeader& header);
   bool is_open_ended() const { return format_.num_frames == 0; }
-  // The span that is being filled or encoded.
+  // Returns the span that is being filled or encoded.
   FrameRange current() const;
   std::optional<InputError> encode_span();
   std::optional<InputError> write(const SpanResult& span);
   void use_header(const SequenceHeader& header);
-  // The header with the grid for errors of `finest` (units) and more.
+  // Returns the header with the grid for errors of `finest` (units) and more.
   SequenceHeader header_for(double finest) const;
   InputResult<TargetResult> search(const FrameRange& span, double rms_spread);
   InputResult<TargetResult> search_first(const FrameRange& span, double rms_spread);
@@ -73,12 +73,12 @@ class SpanEncoder final : public FrameBackend {
   VerifiedOutput out_;
   std::vector<FrameRange> spans_;
   std::optional<SequenceCoding> coding_;
-  std::optional<StreamAssembly> stream_;  // from the first span on
+  std::optional<StreamAssembly> stream_;  // none before the first span
   std::optional<AttributeStage> attributes_;
   std::optional<SpanBuffer> buffer_;
   std::shared_ptr<const KeptRig> rig_;  // in force after the last span; null: none
   std::uint32_t num_added_ = 0;
-  std::uint32_t num_held_ = 0;  // in the buffer
+  std::uint32_t num_held_ = 0;  // frames in the buffer
   std::uint32_t longest_gof_ = 0;
   std::uint32_t num_threads_ = 1;
   Coded coded_;

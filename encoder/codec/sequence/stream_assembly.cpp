@@ -123,12 +123,13 @@ bool StreamAssembly::write_end(const ByteSink& sink) {
              sink);
 }
 
-// As SubStreamExtractor writes it: hashes keep their size, and offsets in the index shrink.
+// Counts bytes as SubStreamExtractor writes them: hashes keep their size, and offsets in the
+// index shrink.
 std::uint64_t StreamAssembly::cut_bytes(std::size_t layers) const {
   GofIndexEntries index = index_;
   std::uint64_t removed = 0;
   auto rig = index.rigs.begin();
-  std::uint64_t offset = index_.first_gof_offset;  // of the GOF, in the whole stream
+  std::uint64_t offset = index_.first_gof_offset;  // offset of the GOF in the whole stream
   for (std::size_t g = 0; g < index.gofs.size(); ++g) {
     // A shared rig comes before the first GOF that uses it.
     for (; rig != index.rigs.end() && rig->offset < offset; ++rig) {

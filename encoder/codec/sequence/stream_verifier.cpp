@@ -20,9 +20,9 @@ std::string text_of(double x, int digits = 10) {
   return text.data();
 }
 
-// FNV-1a, of 64 bits, so that frames which differ are not taken for equal by chance.
+// Returns FNV-1a, of 64 bits, so that different frames are not taken for equal by chance.
 std::uint64_t hash_of(std::span<const std::int32_t> positions) {
-  constexpr std::uint64_t kPrime = 0x100000001b3;  // fixed: of FNV
+  constexpr std::uint64_t kPrime = 0x100000001b3;  // fixed: FNV
   std::uint64_t hash = 0xcbf29ce484222325;
   for (const std::int32_t value : positions) {
     hash = (hash ^ static_cast<std::uint32_t>(value)) * kPrime;
@@ -47,7 +47,8 @@ std::vector<float> nearest_floats(std::span<const double> exact) {
   return floats;
 }
 
-// input_vertex: [vertex of positions], index in the input; empty: the same.
+// Returns positions in input order. input_vertex: [vertex of positions], index in the input;
+// empty: the same.
 std::vector<float> in_input_order(const Grid& grid, std::span<const std::int32_t> positions,
                                   std::span<const std::uint32_t> input_vertex) {
   std::vector<float> floats(positions.size());
@@ -106,8 +107,8 @@ void StreamVerifier::note_rounding(std::span<const double> exact) {
   }
 }
 
-// A coordinate is the nearest float, or on a grid of a given number of bits, half a grid step
-// from it at most, before decoders round it to a float.
+// Compares coordinates: each must be the nearest float or, on a grid of a given number of bits,
+// at most half a grid step away before decoders round it to a float.
 std::optional<InputError> StreamVerifier::compare_without_loss(
     std::uint32_t frame, std::span<const double> exact, std::span<const float> decoded) const {
   // fixed: numbers halfway between two floats may be read as a little more or less.

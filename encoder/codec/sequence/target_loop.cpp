@@ -107,7 +107,7 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
   // tuned: The first step of a search, per error of a coordinate. It decides how close the
   // first encoding is to the target, and with it how many encodings follow.
   constexpr double kStepOfError = 9.0;
-  // The same if all GOFs are of frames, whose positions are quantised themselves.
+  // The same if all GOFs are inter GOFs, whose positions are quantised themselves.
   constexpr double kStepOfFrameError = 2.9;  // fixed: measured: mostly 2.8 to 3.2
   // tuned (off: 1): With the fast preset, an analysis is made for a step that is finer by this
   // factor. Its rest positions then cost more, and leave less for trajectories whose residuals
@@ -140,7 +140,7 @@ InputResult<TargetResult> reach_target(const TargetTask& task, SpanBatch& batch)
   if (is_missed() && batch.use_own_rigs()) search_again(task);
   if (is_missed() && task.settings.target.kind == Target::kBpvf) {
     // Clusters and components that were chosen at a fine step can need more bits than a low
-    // rate has, at any step.
+    // rate allows, at any step.
     batch.choose_again();
     TargetTask from_there = task;
     from_there.first_step = best->step;

@@ -13,8 +13,8 @@
 
 namespace rlpc {
 
-// The search for the target of the settings, in grid steps of the header. rms_spread: RMS of
-// the coordinates about the mean of their frame, over all frames of the batch, in units.
+// Returns a search for the target of the settings, in grid steps of the header. rms_spread: RMS
+// of the coordinates about the mean of their frame, over all frames of the batch, in units.
 TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& header,
                         double rms_spread);
 
@@ -25,7 +25,7 @@ struct TargetTask {
   double fixed_bits = 0.0;   // bits outside the GOFs that count towards a rate
   double first_step = 0.0;   // step of the first trial, grid steps; 0: chosen by the search
   bool keeps_level = false;  // reject a last resort that needs a higher level than the header
-  const Rival* rival = nullptr;  // what must be beaten; null: none
+  const Rival* rival = nullptr;  // result to beat; null: none
   // Called with the number of the trial, from 1, and the fraction of it that is done.
   std::function<void(std::uint32_t trial, double done)> progress = {};
 };
@@ -36,15 +36,15 @@ struct TargetResult {
   double measured = 0.0;  // its error or rate, in the unit of the target
   bool met = false;       // it does not exceed the target
   std::uint32_t trials = 0;
-  bool given_up = false;  // the search, as it had no prospect of beating the rival
+  bool given_up = false;  // the search was not expected to beat the rival
 };
 
 // Runs the search. If it misses the target, searches again without shared rigs of earlier
-// spans; then, for a rate, with what is chosen at the last step; then with the last resort of
-// the batch. Errors: those of the batch.
+// spans; then, for a rate, with the choices of the last step; then with the last resort of the
+// batch. Errors: errors of the batch.
 InputResult<TargetResult> reach_target(const TargetTask& task, SpanBatch& batch);
 
-// The first encoding of that search. Errors: those of the batch.
+// Runs the first encoding of that search. Errors: errors of the batch.
 InputResult<BatchTrial> first_trial(const TargetTask& task, SpanBatch& batch);
 
 }  // namespace rlpc

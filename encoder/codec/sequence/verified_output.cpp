@@ -18,7 +18,7 @@ ByteSink VerifiedOutput::collector() {
   };
 }
 
-// With check_rules, all is checked at the end.
+// With check_rules, the whole stream is checked at the end.
 std::optional<InputError> VerifiedOutput::check_contents(bool has_attributes) {
   if (settings_.check_rules) return std::nullopt;
   return check_rules(settings_, has_attributes, stream_, stream_->size());

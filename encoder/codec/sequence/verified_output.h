@@ -1,4 +1,4 @@
-// Passes the bytes of a stream on as soon as a decoder has verified them, for frames that
+// Passes on the bytes of a stream as soon as a decoder has verified them, for frames that
 // arrive one by one.
 #pragma once
 
@@ -15,8 +15,8 @@
 
 namespace rlpc {
 
-// Bytes that the decoder no longer needs are released, unless the settings have the whole
-// stream checked at its end.
+// Releases bytes that the decoder no longer needs, unless the settings ask for a check of the
+// whole stream at its end.
 class VerifiedOutput {
  public:
   // Keeps a reference to the settings.
@@ -24,19 +24,20 @@ class VerifiedOutput {
   VerifiedOutput(const VerifiedOutput&) = delete;
   VerifiedOutput& operator=(const VerifiedOutput&) = delete;
 
-  // A sink that holds bytes back until pass_on(). It refers to this output.
+  // Returns a sink that holds bytes back until pass_on(). It refers to this output.
   ByteSink collector();
-  // To be called when the first GOF is complete, or as much of it as its first frame needs, and
-  // before any frame is verified. has_attributes: the stream has attributes. Error: what the
-  // input brings breaks a rule.
+  // Checks the contents from the input; call it when the first GOF, or the part that its first
+  // frame needs, is complete and before any frame is verified. has_attributes: the stream has
+  // attributes. Error: the contents break a rule.
   std::optional<InputError> check_contents(bool has_attributes);
-  // Made by the first call, once the header is known. threads: of the decoder of an open-ended
-  // stream; others are decoded by one, which does not look ahead.
+  // Returns the verifier; the first call, once the header is known, makes it. threads: threads
+  // of the decoder of an open-ended stream; other streams are decoded by one thread, without
+  // lookahead.
   StreamVerifier& verifier(const SequenceHeader& header, const ConnectivityCode& connectivity,
                            std::uint32_t threads);
-  // As of StreamVerifier.
+  // Returns StreamVerifier::largest_rounding().
   double largest_rounding() const { return verifier_ ? verifier_->largest_rounding() : 0.0; }
-  // Passes on what has been collected, and verified by the caller. Error: the sink failed.
+  // Passes on the collected bytes, which the caller has verified. Error: the sink failed.
   std::optional<InputError> pass_on(const ByteSink& sink);
   // Verifies the end of the stream, and passes it on.
   std::optional<InputError> finish(const Metrics& reported, const ByteSink& sink);

@@ -13,19 +13,19 @@ namespace rlpc {
 inline constexpr double kTryMargin = 0.1;
 
 // tuned (off: 1): Fraction of the energy of a component that prediction is assumed to leave
-// where it is not measured: of temporal values, and of samples whose vertices are far apart.
+// where it is not measured: for temporal values, and for samples whose vertices are far apart.
 inline constexpr double kPredictionLeft = 0.1;
 
-// Lagrangian cost of coding a value of which prediction leaves `left`, mean square, relative to
-// the error of a quantiser, step^2 / 12; in that unit. The error is left / (1 + left): small
-// values are rounded to zero. The rate is log2(1 + left) / 2 bits, each worth 2 ln 2
+// Returns the Lagrangian cost of coding a value of which prediction leaves `left`, mean square.
+// Both are relative to the error of a quantiser, step^2 / 12. The error is left / (1 + left):
+// small values are rounded to zero. The rate is log2(1 + left) / 2 bits, each worth 2 ln 2
 // (lagrangian.h).
 inline double expected_value_cost(double left) {
   constexpr double kLn2 = 0.6931471805599453;  // fixed: ln 2
   return left / (1.0 + left) + kLn2 * det_log2(1.0 + left);
 }
 
-// Expected Lagrangian cost of coding the component, or of dropping it if that is cheaper.
+// Returns the expected Lagrangian cost of coding the component, or of dropping it if cheaper.
 //
 //   energy            energy of the component, squared grid steps
 //   vertices          number of vertices in the GOF, each with one spatial factor
@@ -34,7 +34,7 @@ inline double expected_value_cost(double left) {
 //   step              quantiser step, grid steps
 inline double expected_component_cost(double energy, double vertices, double values,
                                       double spatial_left, double step) {
-  const double error = step * step / 12.0;  // of a coded value
+  const double error = step * step / 12.0;  // error of a coded value
   const double cost = vertices * expected_value_cost(spatial_left / error) +
                       values * expected_value_cost(kPredictionLeft * energy / (values * error));
   return std::min(energy, error * cost);
@@ -47,8 +47,8 @@ inline constexpr double kOfCoded = 0.6;
 // bones. Each temporal value affects all vertices and has few contexts to share its cost with.
 inline constexpr double kTemporalError = 0.8;
 
-// Expected squared error of a component: about its energy or its quantisation error, whichever
-// is smaller.
+// Returns the expected squared error of a component: about its energy or its quantisation
+// error, whichever is smaller.
 inline double expected_component_error(double energy, double vertices, double frames,
                                        double step) {
   const double values = vertices + 3.0 * kTemporalError * frames;

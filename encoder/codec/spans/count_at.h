@@ -6,7 +6,8 @@
 
 namespace rlpc {
 
-// 1, 2, 3, 4, 6, 8, 12, 16, 24 ...: two to an octave, as the cost changes little in between.
+// Returns 1, 2, 3, 4, 6, 8, 12, 16, 24 ...: two per octave, as the cost changes little in
+// between.
 constexpr std::uint32_t count_at(std::size_t i) {
   if (i % 2 == 1) return 1U << ((i + 1) / 2);
   return i == 0 ? 1 : 3U << (i / 2 - 1);

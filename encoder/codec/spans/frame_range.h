@@ -14,7 +14,7 @@ struct FrameRange {
   std::uint32_t num_gofs = 1;  // GOFs of about equal length that it is divided into
 };
 
-// `num_spans` spans whose lengths differ by at most one frame.
+// Returns `num_spans` spans whose lengths differ by at most one frame.
 inline std::vector<FrameRange> equal_ranges(std::uint32_t num_frames, std::uint64_t num_spans) {
   std::vector<FrameRange> spans;
   for (std::uint64_t g = 0; g < num_spans; ++g) {
@@ -25,7 +25,7 @@ inline std::vector<FrameRange> equal_ranges(std::uint32_t num_frames, std::uint6
   return spans;
 }
 
-// The fewest spans of at most `longest` frames.
+// Returns the fewest spans of at most `longest` frames.
 inline std::vector<FrameRange> equal_gofs(std::uint32_t num_frames, std::uint32_t longest) {
   return equal_ranges(num_frames, (std::uint64_t{num_frames} + longest - 1) / longest);
 }
@@ -35,7 +35,7 @@ inline void divide_spans(std::vector<FrameRange>& spans, std::uint32_t longest) 
   for (FrameRange& span : spans) span.num_gofs = (span.count - 1) / longest + 1;
 }
 
-// Frames of the longest GOF of some spans.
+// Returns the number of frames of the longest GOF of some spans.
 inline std::uint32_t longest_gof(const std::vector<FrameRange>& spans) {
   std::uint32_t longest = 0;
   for (const FrameRange& span : spans) {

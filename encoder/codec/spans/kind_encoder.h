@@ -17,13 +17,13 @@ namespace rlpc {
 class KindEncoder {
  public:
   virtual ~KindEncoder() = default;
-  // The coder keeps a reference to the frames.
+  // Makes a coder, which keeps a reference to the frames.
   virtual std::unique_ptr<SpanCoder> make_coder(const SpanFrames& frames) const = 0;
   // Whether this kind may code the frames at less cost than the likeliest kind.
   //
-  //   components  that the likeliest kind is expected to need
+  //   components  number that the likeliest kind is expected to need
   virtual bool may_win(const SpanFrames& frames, std::uint32_t components) const = 0;
-  // Encodes the frames with the shared rig of an earlier span. None: that costs at least
+  // Encodes the frames with the shared rig of an earlier span. None: this costs at least
   // `most`, or is expected to, or the kind has no rigs.
   virtual std::optional<EncodedSpan> encode_with(const KeptRig& /*rig*/,
                                                  const SpanFrames& /*frames*/, double /*step*/,
@@ -34,8 +34,8 @@ class KindEncoder {
 
 using KindEncoders = std::vector<std::unique_ptr<KindEncoder>>;
 
-// Null if profile or settings exclude the kind. The result keeps references to mesh and
-// settings.
+// Makes the encoder of a kind; null if profile or settings exclude it. The result keeps
+// references to mesh and settings.
 using MakeKindEncoder = std::unique_ptr<KindEncoder> (*)(const SequenceMesh& mesh,
                                                          const EncoderSettings& settings);
 

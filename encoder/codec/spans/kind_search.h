@@ -12,14 +12,14 @@
 namespace rlpc {
 
 // Encodes the GOF by the first kind and, on other threads, by each that may cost less. The
-// choice stands for further steps: comparing again where these move far gains 0.1 % for a fifth
+// choice holds for further steps: comparing again where these move far gains 0.1 % for a fifth
 // more time.
 class KindSearch : public SpanCoder {
  public:
   // kinds: at least one, the most likely first. Keeps references to kinds and frames.
   KindSearch(const KindEncoders& kinds, const SpanFrames& frames, Preset preset);
 
-  // That of the most likely kind.
+  // Sets the progress function of the most likely kind.
   void set_progress(const Progress& progress) override;
   void analyse(double analysis_step) override;
   std::optional<double> expected_error(double step) const override;
@@ -34,7 +34,7 @@ class KindSearch : public SpanCoder {
   const KindEncoders& kinds_;
   const SpanFrames& frames_;
   Preset preset_;
-  std::vector<std::unique_ptr<SpanCoder>> coders_;  // [kind]; null: not chosen so far
+  std::vector<std::unique_ptr<SpanCoder>> coders_;  // [kind]; null: not chosen yet
   std::size_t chosen_ = 0;
   bool is_compared_ = false;
 };

@@ -18,7 +18,7 @@ struct Calls {
   int released = 0;
 };
 
-// Gives an encoding of a fixed size, without error.
+// Returns an encoding of a fixed size, without error.
 class FakeCoder : public SpanCoder {
  public:
   FakeCoder(std::size_t bytes, Calls& calls) : bytes_(bytes), calls_(calls) {}
@@ -40,7 +40,7 @@ class FakeCoder : public SpanCoder {
 
 class FakeKind : public KindEncoder {
  public:
-  // least: components of the likeliest kind from which it may win.
+  // least: number of components of the likeliest kind from which this one may win.
   FakeKind(std::size_t bytes, std::uint32_t least, Calls& calls)
       : bytes_(bytes), least_(least), calls_(calls) {}
   std::unique_ptr<SpanCoder> make_coder(const SpanFrames& /*frames*/) const override {

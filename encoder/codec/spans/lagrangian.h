@@ -15,7 +15,7 @@ namespace rlpc {
 // D. So the multiplier, -dD/dR, is 2 ln 2 D = 0.1155 s^2.
 inline constexpr double kLambda = 0.1155;  // fixed: ln 2 / 6
 
-// The squared error, in squared grid steps, that one bit is worth at a quantiser step.
+// Returns the squared error, in squared grid steps, that one bit is worth at a quantiser step.
 inline double lambda(double step) { return kLambda * step * step; }
 
 inline double bits_of(std::span<const EncodedSpan::Unit> units) {
@@ -25,12 +25,12 @@ inline double bits_of(std::span<const EncodedSpan::Unit> units) {
 }
 inline double bits_of(const EncodedSpan& encoded) { return bits_of(encoded.units); }
 
-// tuned: Frames from which the error of a candidate is taken. It hardly differs from frame to
+// tuned: Frames from which the error of a candidate is taken. It differs little from frame to
 // frame, unless each is predicted from others, and decoding takes time.
 inline constexpr std::uint32_t kErrorFrames = 24;
 
-// D + lambda R of an encoded GOF: squared error of its decoded frames, from a sample unless it
-// is known, and bits of its units.
+// Returns D + lambda R of an encoded GOF: the squared error of its decoded frames, from a
+// sample unless it is known, and the bits of its units.
 inline double lagrangian_cost(const EncodedSpan& encoded, const SpanFrames& frames,
                               double step) {
   const double error = encoded.squared_error
@@ -39,8 +39,8 @@ inline double lagrangian_cost(const EncodedSpan& encoded, const SpanFrames& fram
   return error + lambda(step) * bits_of(encoded);
 }
 
-// Bits at equal error, about, for comparison at one step: of encodings whose errors differ
-// much. Lagrangian costs take the rate for a line, which favours small errors then.
+// Estimates bits at equal error, to compare encodings at one step whose errors differ much.
+// Lagrangian costs assume a linear rate, which then favours small errors.
 inline double bits_at_equal_error(double bits, double squared_error) {
   // tuned (off: 0): The rate is about this power of the squared error.
   constexpr double kRateOfError = -0.25;

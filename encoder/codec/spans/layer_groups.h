@@ -10,9 +10,9 @@
 
 namespace rlpc {
 
-// The layers of each of at most num_groups groups. The layers before each group have at most an
-// eighth of the vertices of all layers up to its end. A group is smaller if it would not leave
-// enough layers for the requested number of groups.
+// Returns the number of layers of each of at most num_groups groups. The layers before each
+// group have at most an eighth of the vertices of all layers up to its end. A group is smaller
+// if it would not leave enough layers for the requested number of groups.
 inline std::vector<std::uint32_t> layer_group_sizes(const OrderedMesh& mesh,
                                                     std::size_t num_groups,
                                                     std::uint32_t requested) {

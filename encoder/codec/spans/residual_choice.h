@@ -17,7 +17,7 @@
 
 namespace rlpc {
 
-// Where rates are not compared, residuals are rounded up from 1/2 and this part of a step:
+// Where rates are not compared, residuals are rounded up from 1/2 plus this part of a step:
 // there, rounding up saves as much error as it costs if the next magnitude takes one bit more.
 inline constexpr double kDeadZone = kLambda / 2.0;  // fixed: arithmetic
 
@@ -29,8 +29,8 @@ inline std::int32_t rounded_residual(double wanted, double round_up) {
   return wanted < 0.0 ? -magnitude : magnitude;
 }
 
-// Of the two integers next to `wanted` (in steps), the one with the lower Lagrangian cost under
-// the models. The larger magnitude is considered only if it is the nearer.
+// Returns the one of the two integers next to `wanted` (in steps) with the lower Lagrangian
+// cost under the models. The larger magnitude is considered only if it is nearer.
 inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expected,
                                      double wanted) {
   constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
@@ -50,7 +50,7 @@ inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expec
 }
 
 // Chooses the residuals of vertex factors, with contexts as if the GOF were a single slice.
-// Copies go on with different vertices of a layer, as of VertexContexts.
+// Copies can continue with different vertices of a layer, as in VertexContexts.
 class VertexResidualChoice {
  public:
   VertexResidualChoice(const OrderedMesh& mesh, std::size_t num_factors)
@@ -64,7 +64,7 @@ class VertexResidualChoice {
   };
 
   void start(std::uint32_t v) { contexts_.start(v); }
-  // Chooses the residual of the next factor and adapts to it; wanted: in steps.
+  // Chooses the residual of the next factor and adapts to it. wanted: in steps.
   Chosen next(double wanted) {
     Chosen chosen{0, contexts_.expected(), static_cast<std::uint32_t>(contexts_.activity())};
     ResidualModels& models = models_.front()[chosen.activity];
@@ -73,7 +73,7 @@ class VertexResidualChoice {
     contexts_.update(chosen.residual);
     return chosen;
   }
-  // Adapts to what a copy has chosen for a vertex, of all factors.
+  // Adapts to the residuals of all factors that a copy has chosen for a vertex.
   void follow(std::span<const Chosen> vertex) {
     for (std::size_t k = 0; k < vertex.size(); ++k) {
       adapt(vertex[k]);
@@ -88,7 +88,7 @@ class VertexResidualChoice {
   }
 
   VertexContexts contexts_;
-  std::vector<VertexModels> models_;  // one, too large for the stack
+  std::vector<VertexModels> models_;  // a single one, too large for the stack
 };
 
 }  // namespace rlpc

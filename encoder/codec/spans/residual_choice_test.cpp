@@ -10,7 +10,7 @@
 namespace rlpc {
 namespace {
 
-// Models adapted to zeros, so that all other residuals are expensive.
+// Returns models adapted to zeros, so that all other residuals are expensive.
 ResidualModels quiet_models() {
   ResidualModels models;
   BitCost cost;

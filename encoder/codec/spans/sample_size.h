@@ -1,4 +1,4 @@
-// Sizes of the samples of a GOF that are analysed in place of all of it.
+// Sizes of the samples of a GOF that are analysed instead of all of it.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ inline constexpr std::uint32_t kSampleFrames = 24;
 // the mesh; more take time in proportion.
 inline constexpr std::uint32_t kSampleVertices = 3000;
 // tuned: Vertices that stand for the whole mesh in estimates that are averages: costs of GOFs,
-// smoothness of motion, predictability of trajectories. More vertices hardly change an average.
+// smoothness of motion, predictability of trajectories. More vertices barely change an average.
 inline constexpr std::uint32_t kProbeVertices = 160;
 
 }  // namespace rlpc

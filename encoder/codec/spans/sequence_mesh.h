@@ -13,8 +13,8 @@ struct SequenceMesh {
   const SequenceHeader& header;  // its grid and level may change later
   const Topology& topology;
   std::span<const Triangle> triangles;
-  // The same, each turned as in the input, and in the order of the input. Empty unless the
-  // profile is Baseline.
+  // The same triangles with the rotation and order of the input. Empty unless the profile is
+  // Baseline.
   std::span<const Triangle> input_triangles = {};
 };
 

@@ -18,20 +18,20 @@ struct SpanFrames {
   std::uint32_t num_vertices = 0;
   std::uint32_t num_frames = 0;
   std::vector<double> xyz;        // [num_frames][num_vertices][3], decoded vertex order
-  std::uint32_t first_frame = 0;  // in the sequence
+  std::uint32_t first_frame = 0;  // number in the sequence
   std::uint32_t num_gofs = 1;     // GOFs that the span is divided into
   bool has_followers = false;     // later spans may use the shared rig of this one
 
-  // The GOFs, with frames counted from the start of the span.
+  // Returns the GOFs, with frames counted from the start of the span.
   std::vector<FrameRange> gofs() const { return equal_ranges(num_frames, num_gofs); }
   const double* at(std::uint32_t frame, std::uint32_t vertex) const {
     return &xyz[(std::size_t{frame} * num_vertices + vertex) * 3];
   }
 };
 
-// Sum of squared distances between the frames and the decoded positions, or what it is
-// expected to be from `most` evenly spaced frames. decode(f, positions) writes the positions of
-// frame f, [num_vertices][3]; any thread may call it.
+// Returns the sum of squared distances between the frames and the decoded positions, or an
+// estimate from `most` evenly spaced frames. decode(f, positions) writes the positions of frame
+// f, [num_vertices][3]; any thread may call it.
 template <typename Decode>
 double squared_error(const SpanFrames& frames, const Decode& decode,
                      std::uint32_t most = 0xFFFFFFFF) {
@@ -60,7 +60,7 @@ double squared_error(const SpanFrames& frames, const Decode& decode,
   return sum * frames.num_frames / count;
 }
 
-// The grid position nearest to a vertex, clipped to position_bits.
+// Returns the grid position nearest to a vertex, clipped to position_bits.
 inline Vec3i nearest_position(const double* xyz, int position_bits) {
   Vec3i p{};
   for (std::size_t c = 0; c < 3; ++c) {

@@ -16,7 +16,7 @@ SpanFrames frames_in_gof(const SpanFrames& frames, const FrameRange& gof) {
 
 namespace {
 
-// The frames of all parts, one after the other.
+// Decodes the frames of all parts, one after the other.
 DecodeFrame frames_of_all(const std::vector<FrameRange>& gofs,
                           std::vector<DecodeFrame> decoders) {
   return [gofs, decoders = std::move(decoders)](std::uint32_t f,

@@ -1,4 +1,4 @@
-// Encodes a span whose GOFs share nothing: each by a coder of its own.
+// Encodes a span whose GOFs share nothing, each with a coder of its own.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ class SplitCoder : public SpanCoder {
  public:
   using MakeCoder = std::function<std::unique_ptr<SpanCoder>(const SpanFrames& frames)>;
 
-  // make: of the coder of a GOF, which keeps a reference to its frames. Keeps a reference to
+  // make: makes the coder of a GOF, which keeps a reference to its frames. Keeps a reference to
   // the frames of the span.
   SplitCoder(const SpanFrames& frames, const MakeCoder& make);
 
@@ -26,7 +26,7 @@ class SplitCoder : public SpanCoder {
 
  private:
   struct Part {
-    SpanFrames frames;  // only while it is encoded
+    SpanFrames frames;  // empty unless it is being encoded
     std::unique_ptr<SpanCoder> coder;
   };
 
@@ -34,7 +34,7 @@ class SplitCoder : public SpanCoder {
   std::vector<std::unique_ptr<Part>> parts_;
 };
 
-// The frames of a GOF of a span.
+// Returns the frames of a GOF of a span.
 SpanFrames frames_in_gof(const SpanFrames& frames, const FrameRange& gof);
 
 }  // namespace rlpc

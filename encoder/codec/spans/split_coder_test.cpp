@@ -16,7 +16,7 @@ constexpr std::uint32_t kVertices = 2;
 struct Calls {
   int encodings = 0;
   int released = 0;
-  std::vector<std::size_t> sizes;  // of the frames at each encoding
+  std::vector<std::size_t> sizes;  // number of values in the frames, at each encoding
 };
 
 // Decodes to the frames, rounded, after a unit with the number of its first frame.

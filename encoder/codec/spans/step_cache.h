@@ -22,8 +22,8 @@ class StepCache {
   void put(double step, T value) { held_.emplace(step, std::move(value)); }
   void release() { held_.reset(); }
   bool has(double step) const { return held_ && held_->first == step; }
-  double step() const { return held_->first; }  // of the value; there must be one
-  // Whatever value is cached; null if there is none.
+  double step() const { return held_->first; }  // a value must be cached
+  // Returns the cached value; null if there is none.
   const T* last() const { return held_ ? &held_->second : nullptr; }
 
  private:

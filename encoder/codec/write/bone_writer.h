@@ -14,14 +14,14 @@
 
 namespace rlpc {
 
-// rotation_between, origin_between or temporal_between.
+// Writes rotation_between, origin_between or temporal_between.
 inline void write_between(SectionWriter& section, const TrackFrames& frames,
                           std::array<BitModel, kMaxBetween>& models, int between) {
   if (frames.levels > 0) section.truncated_unary(models, between);
 }
 
-// The models and running means start afresh with each object: in a bone section, a track
-// section, and in the slice of component group 0 of a temporal layer (9.8.1).
+// Writes bones and their tracks. Models and running means start with each object: in a bone
+// section, a track section, and the slice of component group 0 of a temporal layer (9.8.1).
 class BoneWriter {
  public:
   BoneWriter(SectionWriter& section, const TrackFrames& frames)

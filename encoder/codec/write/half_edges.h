@@ -21,8 +21,8 @@ struct HalfEdges {
   std::uint32_t num_instances = 0;
 };
 
-// The half-edge that starts at the same vertex, one triangle further around it; kNone at a
-// mesh boundary. The two functions turn in opposite directions.
+// Return the half-edge that starts at the same vertex, one triangle further around it; kNone at
+// a mesh boundary. The two functions turn in opposite directions.
 inline std::uint32_t turn_left(const HalfEdges& mesh, std::uint32_t h) {
   return mesh.opposite[previous_corner(h)];
 }

@@ -52,7 +52,7 @@ class SectionWriter {
       node = 2 * node + (bit ? 1 : 0);
     }
   }
-  // Bytes so far.
+  // Returns the number of bytes so far.
   std::size_t size() const { return re_.size(); }
   // Ends the section and returns its bytes; the writer cannot be used afterwards.
   std::vector<std::uint8_t> finish() { return re_.finish(); }

@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// F.2.1 attributes( ): the payload of an attribute unit. triangles: in decoded order.
+// F.2.1 attributes( ): returns the payload of an attribute unit. triangles: in decoded order.
 std::vector<std::uint8_t> write_attributes(const CodedAttributes& coded,
                                            std::uint32_t num_vertices,
                                            std::span<const Triangle> triangles);

@@ -10,8 +10,8 @@
 
 namespace rlpc {
 
-// The payload of the unit of a cluster GOF, for either profile. All values must be legal, which
-// is asserted: an encoder that emits an illegal value has a bug.
+// Returns the payload of the unit of a cluster GOF, for either profile. All values must be
+// legal, which is asserted: an encoder that emits an illegal value has a bug.
 std::vector<std::uint8_t> write_cluster_gof(const ClusterGof& gof, const SequenceHeader& header,
                                             const Topology& topology);
 

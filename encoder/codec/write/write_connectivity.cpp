@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::uint32_t kNone = HalfEdges::kNone;
 
-// All are tried. Small values suit irregular meshes, large ones grids and subdivided meshes.
+// Values that are all tried. Small ones suit irregular meshes, large ones grids and subdivided
+// meshes.
 constexpr std::array<std::uint32_t, 4> kUrgentDegrees{3, 4, 5, 6};
 
 bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
@@ -26,7 +27,7 @@ struct Input {
   std::uint32_t num_vertices = 0;
   std::vector<Triangle> regular;
   std::vector<Triangle> degenerate;
-  HalfEdges half_edges;       // of the triangles in `regular`
+  HalfEdges half_edges;       // made from the triangles in `regular`
   bool vertex_reuse = false;  // whether any vertex has several instances
 };
 
@@ -241,9 +242,9 @@ void ConnectivityWriter::degenerate_triangle(const Triangle& triangle) {
   code_.triangles.push_back(decoded);
 }
 
-// The border node at the vertex where half-edge `third` starts, in the part of the border that
-// the triangle of `third` touches. Walks around that vertex in both directions in lockstep,
-// through triangles not yet decoded.
+// Returns the border node at the vertex where half-edge `third` starts, in the part of the
+// border that the triangle of `third` touches. Walks around that vertex in both directions in
+// lockstep, through triangles not yet decoded.
 std::uint32_t ConnectivityWriter::find_target(std::uint32_t third) const {
   std::uint32_t left = third;
   std::uint32_t right = third;

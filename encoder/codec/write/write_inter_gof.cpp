@@ -185,7 +185,7 @@ InterGofPayloads write_inter_gof(const InterGof& gof, const OrderedMesh& mesh,
   payloads.first = write_inter_gof_unit(gof, gof, mesh.topology());
   FrameUnitWriter writer(mesh, gof);
   const FrameOrder order(gof.pattern, gof.num_frames);
-  // A unit ends after those of lower temporal layers, which its frames may need.
+  // A unit ends after the units of lower temporal layers, which its frames may need.
   const auto finish_units = [&](std::uint32_t highest_layer) {
     for (std::uint32_t t = 0; t <= highest_layer; ++t) {
       if (writer.unit_frames(t) > 0) payloads.frames.push_back(writer.finish_unit(t));
@@ -204,7 +204,7 @@ InterGofPayloads write_inter_gof(const InterGof& gof, const OrderedMesh& mesh,
     writer.start_frame(place, order[place]);
     if (frame.reference) writer.set_reference(place - order.place_of(*frame.reference));
     writer.set_patches(frame.patches);
-    std::uint32_t first = 0;  // of the layers of the group
+    std::uint32_t first = 0;  // first layer of the group
     for (std::uint32_t j = 0; j < frame.layer_groups; ++j) {
       writer.start_group(j);
       if (place == 0 && gof.rest.order_flag) {

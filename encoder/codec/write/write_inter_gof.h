@@ -18,12 +18,12 @@
 
 namespace rlpc {
 
-// 6.14 frames_of_gof( ): the payload of the GOF unit. Settings must be legal.
+// 6.14 frames_of_gof( ): returns the payload of the GOF unit. Settings must be legal.
 std::vector<std::uint8_t> write_inter_gof_unit(const GofHeader& gof,
                                                const InterSettings& settings,
                                                const Topology& topology);
 
-// Writes frame units, residual by residual: an encoder can choose each by its cost.
+// Writes frame units, residual by residual, so that an encoder can choose each by its cost.
 class FrameUnitWriter {
  public:
   // Mesh and settings must outlive it.
@@ -35,42 +35,44 @@ class FrameUnitWriter {
         patch_contexts_(settings.num_patches, settings.pattern.num_depths()),
         units_(settings.pattern.temporal_layers) {}
 
-  // Each frame, in coding order: start_frame(), with its place, and for each of its layer
-  // groups start_group(), the vertices of its layers in the order of the mesh but for those
+  // Starts a frame. Calls for each frame, in coding order: start_frame(), with its place, and
+  // for each layer group start_group(), the vertices of its layers in mesh order except those
   // that patches move alone, and end_group(). If the GOF has patches, set_patches() comes
-  // second in each frame but the first. finish_unit() comes after each layer group; or, if
-  // there is only one, after one or more frames of a temporal layer, but in an open-ended
-  // stream, before a frame of another.
+  // second in each frame but the first. finish_unit() comes after each layer group or, if there
+  // is only one, after one or more frames of a temporal layer; in an open-ended stream, before
+  // a frame of another temporal layer.
   void start_frame(std::uint32_t place, const FramePlace& frame);
-  // Then, if it is predicted from the frame so many places before, in place of its references.
+  // Sets the distance, in places, of the earlier frame that predicts this one instead of its
+  // references.
   void set_reference(std::uint32_t distance) { reference_distance_ = distance; }
   void set_patches(const FramePatches& patches) { patches_ = patches; }
   void start_group(std::uint32_t layer_group);
-  // In place of the vertices of a first frame with an order of its own: residuals,
+  // Writes a first frame in an order of its own, instead of its vertices: residuals,
   // [num_vertices][3], and counterparts, [num_vertices] or empty.
   void write_positions(const RestOrder& order, std::span<const std::int32_t> residuals,
                        std::span<const Counterpart> counterparts);
-  // In place of these: the frame repeats the one so many places before.
+  // Writes that the frame repeats the one so many places before, instead of all these calls.
   void repeat(const FramePlace& frame, std::uint32_t distance);
-  // For each vertex start(), then write() for each axis.
+  // Starts a vertex; then call write() for each axis.
   void start(std::uint32_t v) { contexts_.start(v); }
   InterContexts& contexts() { return contexts_; }
   const PatchContexts& patch_contexts() const { return patch_contexts_; }
   void write(std::int32_t residual);
-  // frame_crc: used in the last layer group if the GOF has hashes of frames.
+  // Ends a layer group. frame_crc: used in the last group if the GOF has hashes of frames.
   void end_group(std::uint32_t frame_crc = 0);
-  // Of the unit of a temporal layer: the frames in it, and the bytes of its section so far.
+  // Return the number of frames in the unit of a temporal layer, and the bytes of its section
+  // so far.
   std::size_t unit_frames(std::uint32_t layer) const { return units_[layer].frames.size(); }
   std::size_t unit_bytes(std::uint32_t layer) const {
     return units_[layer].section ? units_[layer].section->size() : 0;
   }
-  // Its payload; it must have frames.
+  // Ends the unit of a temporal layer, which must have frames, and returns its payload.
   std::vector<std::uint8_t> finish_unit(std::uint32_t layer);
 
  private:
   struct UnitFrame {
     std::uint32_t frame = 0;
-    std::uint32_t distance = 0;  // of the frame that it repeats, or is predicted from; or 0
+    std::uint32_t distance = 0;  // to the frame that it repeats, or is predicted from; or 0
     bool is_repeated = false;
     std::uint32_t crc = 0;
   };
@@ -90,24 +92,25 @@ class FrameUnitWriter {
   bool is_open_ended_;
   InterContexts contexts_;
   PatchContexts patch_contexts_;
-  FramePatches patches_;  // of the frame
+  FramePatches patches_;  // patches of the frame
   std::uint32_t reference_distance_ =
-      0;  // of the frame; 0: it has the references of its pattern
+      0;  // places; 0: the frame has the references of its pattern
   std::uint32_t frame_ = 0;
   std::vector<Unit> units_;  // [temporal layer]
-  Unit* unit_ = nullptr;     // of the frame
+  Unit* unit_ = nullptr;     // unit of the frame
 };
 
-// 6.14.2 gof_end( ): the payload of a frame unit that ends a GOF of an open-ended stream.
+// 6.14.2 gof_end( ): returns the payload of a frame unit that ends a GOF of an open-ended
+// stream.
 std::vector<std::uint8_t> write_gof_end(std::uint32_t num_frames);
 
-// Payloads of a GOF unit, and of its frame units.
+// Payloads of a GOF unit and of its frame units.
 struct InterGofPayloads {
   std::vector<std::uint8_t> first;
   std::vector<std::vector<std::uint8_t>> frames;
 };
-// The whole GOF, with the layer groups that each frame has. frames_per_unit: at most; several
-// share a unit only if there is one layer group, and if they are of one temporal layer.
+// Writes the whole GOF, with the layer groups that each frame has. frames_per_unit: maximum;
+// frames share a unit only if there is one layer group and they are of one temporal layer.
 InterGofPayloads write_inter_gof(const InterGof& gof, const OrderedMesh& mesh,
                                  std::uint32_t frames_per_unit = 1);
 

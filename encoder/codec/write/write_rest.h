@@ -51,7 +51,7 @@ class RestWriter {
     write_residual(section, counterparts_.class_of(v_), residual, contexts_);
   }
 
-  // The same for a section that only estimates, instead of counterpart() and finish().
+  // Replace counterpart() and finish() for a section that only estimates.
   template <class Section>
   void estimate_counterpart(Section& section, const Counterpart& choice) {
     write_counterpart(section, choice);

@@ -46,7 +46,7 @@ class SliceWriter {
         shared_(shared),
         trajectory_mean_(frames.count, 0) {}
 
-  // first: of the unit before the slices. temporal_layers: as in SkinnedGof.
+  // first: payload of the unit before the slices. temporal_layers: as in SkinnedGof.
   SkinnedGofPayloads write_all(std::vector<std::uint8_t> first,
                                std::span<const std::uint32_t> temporal_layers = {});
 
@@ -54,14 +54,14 @@ class SliceWriter {
   std::uint32_t first_own_group() const {
     return unit_ == Unit::kTracks ? gof_.num_component_groups + 1 : 1;
   }
-  // The factors of a component group with vertices.
+  // Returns the factors of a component group with vertices.
   FactorGroup factors(std::uint32_t group) const {
     return factor_group(gof_, own_group(group));
   }
   std::size_t own_group(std::uint32_t group) const {
     return unit_ == Unit::kTracks ? group - gof_.num_component_groups : group;
   }
-  // The trajectories of a component group of the GOF or of its shared rig, from 1 on.
+  // Returns the trajectories of a component group of the GOF or of its shared rig, from 1 on.
   FactorGroup tracks_of(std::uint32_t group) const {
     return shared_ != nullptr && group < first_own_group() ? factor_group(*shared_, group)
                                                            : factors(group);
@@ -269,8 +269,8 @@ std::vector<std::uint8_t> SliceWriter::write(std::uint32_t group, std::uint32_t 
   return w.take();
 }
 
-// Of a skinned GOF with a shared rig, slice_layers says of the groups of the shared rig only
-// whether they have a slice.
+// Writes all slices. In a skinned GOF with a shared rig, slice_layers only says whether groups
+// of the shared rig have a slice.
 SkinnedGofPayloads SliceWriter::write_all(std::vector<std::uint8_t> first,
                                           std::span<const std::uint32_t> temporal_layers) {
   SkinnedGofPayloads payloads{std::move(first), {}, {}};

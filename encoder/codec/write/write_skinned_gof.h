@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-// Payloads of a GOF or rig unit, and of its slice units.
+// Payloads of a GOF or rig unit and of its slice units.
 struct SkinnedGofPayloads {
   std::vector<std::uint8_t> first;
   std::vector<std::vector<std::uint8_t>> slices;

@@ -12,13 +12,13 @@
 
 namespace rlpc {
 
-// Each returns the payload of a unit.
+// Return the payload of a unit.
 Bytes write_sequence_header(const SequenceHeader& header);
 Bytes write_vertex_order(std::span<const std::uint32_t> output_vertex);
 Bytes write_metadata(std::string_view json);
-// At least one clip, and at most kMaxClips.
 // 6.16 asset( ), of a GLB.
 Bytes write_asset(std::string_view glb);
+// At least one clip, and at most kMaxClips.
 Bytes write_clip_table(std::span<const Clip> clips);
 
 }  // namespace rlpc

@@ -11,8 +11,8 @@
 
 namespace rlpc {
 
-// frame_mean [num_gof_frames]: running means over the tracks, updated. models: of level 0, and
-// of the others if `order` has any. Coder: as in write_residual().
+// frame_mean: [num_gof_frames], running means over the tracks, updated. models: for level 0,
+// and for other levels if `order` has any. Coder: as in write_residual().
 template <class Coder>
 void write_track(Coder& re, std::span<ResidualModels> models,
                  std::span<std::uint32_t> frame_mean, std::span<const TrackPlace> order,

@@ -13,7 +13,7 @@
 
 namespace rlpc {
 
-// extension: that of the point cache file.
+// Reads a point cache. extension: extension of the point cache file.
 inline void read_point_cache(const std::uint8_t* data, std::size_t size,
                              const std::string& extension) {
   FuzzInput input(data, size);

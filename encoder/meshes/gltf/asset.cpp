@@ -31,7 +31,7 @@ void remove_textures(Json& value, const IsUnwanted& is_unwanted) {
   for (Json& member : value) remove_textures(member, is_unwanted);
 }
 
-// Names of extensions that occur in the document.
+// Finds the names of extensions that occur in the document.
 void find_extensions(const Json& value, std::set<std::string>& found) {
   if (!value.is_structured()) return;
   if (value.is_object() && value.contains("extensions") && value["extensions"].is_object()) {
@@ -49,7 +49,7 @@ class AssetMaker {
     for (const char* const key : kKept) {
       if (root_.contains(key)) out_[key] = root_[key];
     }
-    // What glTF has by default, written down: streams without materials get another.
+    // Write down the default of glTF: streams without materials get another.
     if (!out_.contains("materials")) out_["materials"] = Json::array();
     if (out_["materials"].size() == model_.num_materials && has_plain_parts()) {
       out_["materials"].push_back(Json::object());
@@ -62,7 +62,7 @@ class AssetMaker {
       check_textures();
     }
     use_first_uv(model_.equal_uv, out_["materials"]);
-    // For writers of glTF, which restore them.
+    // Keep equal sets for writers of glTF, which restore them.
     if (!model_.equal_uv.empty()) out_["extras"]["equal_uv"] = model_.equal_uv;
     add_parts();
     GltfAsset asset;
@@ -100,7 +100,7 @@ class AssetMaker {
   // Leaves out images that could not be read, and textures without one.
   void check_textures() {
     constexpr std::size_t kNone = SIZE_MAX;
-    std::vector<std::size_t> places;  // of images that stay
+    std::vector<std::size_t> places;  // new places of images that stay
     Json images = Json::array();
     for (std::size_t i = 0; i < is_carried_.size(); ++i) {
       places.push_back(is_carried_[i] ? images.size() : kNone);
@@ -108,7 +108,7 @@ class AssetMaker {
     }
     out_.erase("images");
     if (!images.empty()) out_["images"] = std::move(images);
-    // True if there is an image.
+    // Returns whether there is an image.
     const auto renumber = [&](Json& object) {
       const auto source = index_of(object, "source", places.size());
       if (!source || places[*source] == kNone) {
@@ -150,11 +150,11 @@ class AssetMaker {
   struct Range {
     std::uint32_t buffer = 0;
     std::uint64_t offset = 0;
-    std::optional<std::uint64_t> size;  // none: to the end
+    std::optional<std::uint64_t> size;  // none: up to the end
   };
 
   struct Image {
-    std::optional<std::size_t> view;  // of the asset; none: it is not carried
+    std::optional<std::size_t> view;  // view of the asset; none: not carried
     std::string type;                 // "image/png"
     std::string problem;              // why it is not carried
   };
@@ -185,7 +185,7 @@ class AssetMaker {
     return known->second;
   }
 
-  // None: an error says why.
+  // Returns the range of an image; none with an error.
   std::optional<Range> range_of(std::uint32_t number, GltfErrors& errors) const {
     const GltfValue root(root_, errors);
     const GltfValue view = root["bufferViews"][number];
@@ -211,8 +211,8 @@ class AssetMaker {
     return buffers;
   }
 
-  // Adds an image to the asset. Other files stay where they are, whatever a document says of
-  // them. errors: of the reader; cleared.
+  // Adds an image to the asset. Other files are not carried, whatever a document says of them.
+  // errors: errors of the reader; cleared.
   Image carry(GltfBuffers& reader, const Range& range, const std::string& place,
               GltfErrors& errors) {
     constexpr std::uint64_t kLongestMagic = 16;
@@ -250,7 +250,7 @@ class AssetMaker {
     return image;
   }
 
-  // Names of the nodes that hold the parts, in the order of `part` (Table F-1).
+  // Adds the names of the nodes that hold the parts, in the order of `part` (Table F-1).
   void add_parts() {
     std::vector<std::uint32_t> nodes;
     std::set<std::uint32_t> known;
@@ -299,9 +299,9 @@ class AssetMaker {
   std::vector<bool> is_carried_;  // [image]
   std::vector<std::string> notes_;
   std::set<std::string> files_;
-  std::map<std::pair<std::string, std::uint32_t>, Image> images_;  // by URI, or view
+  std::map<std::pair<std::string, std::uint32_t>, Image> images_;  // [URI, or view]
   GltfErrors buffer_errors_{file_.file.path()};
-  std::optional<GltfBuffers> buffers_;  // once an image is in one
+  std::optional<GltfBuffers> buffers_;  // none before an image needs one
 };
 
 }  // namespace

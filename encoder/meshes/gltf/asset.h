@@ -1,4 +1,4 @@
-// What a viewer needs of a glTF document besides its meshes: materials, textures, names of
+// The parts of a glTF document that viewers need besides meshes: materials, textures, names of
 // parts.
 #pragma once
 
@@ -14,15 +14,15 @@
 namespace rlpc {
 
 struct GltfAsset {
-  // A GLB without geometry, whose nodes have the names of the parts of the mesh; empty: there
-  // is nothing to keep.
+  // A GLB without geometry, whose nodes have the names of the parts of the mesh; empty: nothing
+  // to keep.
   std::string glb;
-  std::vector<std::string> notes;  // about what could not be read
-  std::vector<std::string> files;  // of images
+  std::vector<std::string> notes;  // about data that could not be read
+  std::vector<std::string> files;  // image files
 };
 
-// root: the document, valid. Images come into the binary chunk, wherever they were; without
-// textures, materials lose those. Memory: counted; exceeding the limit is an error there.
+// Makes the asset of a valid document. Images are moved into the binary chunk; without
+// `textures`, materials lose them. Exceeding the limit of `memory` is an error there.
 GltfAsset make_gltf_asset(const nlohmann::json& root, const GltfModel& model, GltfFile& file,
                           bool textures, GltfMemory& memory);
 

@@ -13,7 +13,7 @@ namespace {
 
 using Attribute = GltfGeometry::Attribute;
 
-// Table F-1.
+// Returns the name of a set in Table F-1.
 std::string set_name(const std::string& semantic) {
   if (semantic == "NORMAL") return "normal";
   const std::string number = semantic.substr(semantic.rfind('_') + 1);
@@ -27,7 +27,7 @@ const Attribute* find(const GltfGeometry& geometry, const std::string& semantic)
   return nullptr;
 }
 
-// Of length 1, or zero.
+// Returns the normal of a face, of length 1, or zero.
 GltfVec3 face_normal(const std::array<GltfVec3, 3>& corner) {
   GltfVec3 a{};
   GltfVec3 b{};
@@ -96,7 +96,8 @@ class AttributeCollector {
     return set;
   }
 
-  // Calls with the index of each instance without normals, and that of its first triangle.
+  // Calls a function with the index of each instance without normals, and that of its first
+  // triangle.
   template <class Function>
   void for_flat_instances(Function&& function) const {
     std::size_t first = 0;
@@ -107,7 +108,7 @@ class AttributeCollector {
     }
   }
 
-  // xyz: of the vertices of an instance.
+  // xyz: positions of the vertices of an instance.
   void append_face_normals(std::size_t instance, std::size_t first_triangle,
                            std::span<const float> xyz, std::vector<float>& normals) const {
     const GltfModel::Instance& placed = model_.instances[instance];
@@ -122,7 +123,8 @@ class AttributeCollector {
     }
   }
 
-  // Where primitives have no normals, faces are flat (glTF 2.0, 3.7.2.1): a value for each.
+  // Adds a value for each face of primitives without normals, which are flat (glTF 2.0,
+  // 3.7.2.1).
   void add_flat_normals(SourceAttribute& set) const {
     for_flat_instances([&](std::size_t i, std::size_t first) {
       const GltfGeometry& geometry = geometry_of(model_.instances[i]);
@@ -134,7 +136,7 @@ class AttributeCollector {
     });
   }
 
-  // Where there are none: white, or the origin of textures.
+  // Adds values; instances without any get white, or the origin of textures.
   void add_values(const GltfModel::Instance& instance, const Attribute* attribute, float sign,
                   SourceAttribute& set) const {
     const bool is_colour = set.name.starts_with("colour");
@@ -162,7 +164,7 @@ class AttributeCollector {
       set->kind = SourceAttribute::Kind::kIntegers;
     }
     constexpr std::size_t kMost = 65535;
-    std::map<std::uint32_t, std::size_t> numbers;  // of nodes
+    std::map<std::uint32_t, std::size_t> numbers;  // [node]
     for (const GltfModel::Instance& instance : model_.instances) {
       const std::size_t number =
           numbers.try_emplace(instance.node, numbers.size()).first->second;
@@ -182,7 +184,7 @@ class AttributeCollector {
     if (!is_constant(part)) all.sets.push_back(std::move(part));
   }
 
-  // Normals belong to meshes before nodes and joints move them.
+  // Adds the rest shape: normals belong to meshes before nodes and joints move them.
   void add_rest_shape(SourceAttributes& all) const {
     for (const GltfModel::Instance& instance : model_.instances) {
       const std::vector<float>& base = geometry_of(instance).base;
@@ -197,7 +199,7 @@ class AttributeCollector {
     }
   }
 
-  // Of vertices, then of the triangles of flat instances.
+  // Returns normals of vertices, then of the triangles of flat instances.
   std::vector<float> all_normals(const GltfPose& pose) const {
     std::vector<float> normals = posed_normals(model_, pose);
     PosedModel posed(model_, pose);

@@ -123,7 +123,7 @@ class ClipReader {
   GltfErrors& errors_;
 };
 
-// Those that one name selects; none with an error.
+// Returns the animations that one name selects; none with an error.
 std::vector<std::uint32_t> animations_of(const GltfDocument& document, const std::string& name,
                                          GltfErrors& errors) {
   const auto count = static_cast<std::uint32_t>(document.animations.size());

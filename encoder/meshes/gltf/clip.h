@@ -26,11 +26,11 @@ struct GltfClip {
   double end = 0.0;    // last time of all tracks, at least 0
 };
 
-// The first animation names, quoted, for messages.
+// Returns the first animation names, quoted, for messages.
 std::string gltf_animation_names(const GltfDocument& document);
 
-// The animations that `names` select, in their order: names, indices from 0, or "all"; the
-// first, if any, without names. None twice.
+// Returns the animations that `names` select, in their order, each once: names, indices from 0,
+// or "all"; without names the first, if any.
 std::vector<std::uint32_t> choose_animations(const GltfDocument& document,
                                              std::span<const std::string> names,
                                              GltfErrors& errors);

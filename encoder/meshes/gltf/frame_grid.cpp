@@ -15,9 +15,9 @@ namespace {
 using std::to_string;
 
 constexpr std::uint32_t kUsual = 30;
-constexpr std::uint32_t kLowest = 24;  // to search for; lower rates have multiples from here on
-constexpr std::uint32_t kHighest = 60;       // of rates that need no key at every other frame
-constexpr std::uint32_t kDense = 240;        // the highest of those that do
+constexpr std::uint32_t kLowest = 24;        // lowest tried; lower rates have multiples above
+constexpr std::uint32_t kHighest = 60;       // highest that needs no key at every other frame
+constexpr std::uint32_t kDense = 240;        // highest that needs such keys
 constexpr std::uint32_t kMostAdvised = 600;  // the least common multiple of 24, 25 and 60
 constexpr double kLimit = 1000.0;            // frames per second, for short clips
 
@@ -25,7 +25,7 @@ double frames_at(double seconds, const FrameRate& rate) {
   return seconds * rate.numerator / rate.denominator;
 }
 
-// Distinct times of the keys of a clip, ascending. Channels often share theirs.
+// Returns the distinct times of the keys of a clip, ascending. Channels often share theirs.
 std::vector<float> key_times(const GltfClip& clip) {
   std::vector<float> times;
   const std::vector<float>* last = nullptr;
@@ -63,7 +63,7 @@ bool is_dense(const GltfFrameGrid& grid, const Keys& keys) {
   return 2.0 * static_cast<double>(num_keys) >= num_frames;
 }
 
-// Rates to try, in this order.
+// Returns the rates to try, in this order.
 std::vector<FrameRate> common_rates() {
   std::vector<FrameRate> rates{{kUsual, 1},   {kLowest, 1},  {25, 1},
                                {30000, 1001}, {24000, 1001}, {60000, 1001}};
@@ -79,7 +79,7 @@ std::vector<FrameRate> dense_rates() {
   return rates;
 }
 
-// The rate on whose grid all keys are, if any.
+// Returns the rate on whose grid all keys are, if any.
 std::optional<GltfFrameGrid> shared_grid(const Keys& keys,
                                          const std::optional<FrameRate>& hint) {
   std::vector<FrameRate> rates = common_rates();
@@ -108,8 +108,8 @@ std::optional<GltfFrameGrid> shared_grid(const Keys& keys,
   return std::nullopt;
 }
 
-// The simplest fraction that is x > 0 to the precision of a 32-bit float, from the continued
-// fraction.
+// Returns the simplest fraction that is x > 0 to the precision of a 32-bit float, from the
+// continued fraction.
 FrameRate simplest_fraction(double x) {
   constexpr double kMost = std::numeric_limits<std::uint32_t>::max();
   double before[2] = {0.0, 1.0};  // numerator, denominator
@@ -132,7 +132,7 @@ std::string rate_text(const FrameRate& rate) {
   return shortest_text(static_cast<float>(std::round(value * 1000.0) / 1000.0));
 }
 
-// What is said where keys lie on no common rate: what was chosen, and a rate that has them all.
+// Returns a note if keys lie on no common rate: the chosen rate, and a rate with all keys.
 std::string note_of(const FrameRate& rate, const std::string& why, const Keys& keys) {
   const char* const of = keys.size() > 1 ? "animations lie" : "animation lie";
   std::string note = std::string("the keys of the ") + of +
@@ -157,8 +157,8 @@ bool half_on(const GltfFrameGrid& grid, const Keys& keys) {
   return 2 * num_on >= num_keys;
 }
 
-// A common rate at which all clips end with a frame, if any. A single clip has rates near 30
-// that do, too, and takes another only if that has half of its keys.
+// Returns a common rate at which all clips end with a frame, if any. A single clip always has
+// such rates near 30, and takes another only if that has half of its keys.
 std::optional<GltfFrameGrid> grid_of_ends(const Keys& keys) {
   Keys ends;
   for (const std::vector<float>& times : keys) {
@@ -175,7 +175,7 @@ std::optional<GltfFrameGrid> grid_of_ends(const Keys& keys) {
   return std::nullopt;
 }
 
-// Of one clip, the next rate from 30 on that has a frame at its end.
+// Returns, for one clip, the next rate from 30 on that has a frame at its end.
 GltfFrameGrid grid_to_end(double end, const Keys& keys) {
   const double steps = std::ceil(frames_at(end, {kUsual, 1}));
   FrameRate rate{kUsual, 1};
@@ -190,8 +190,8 @@ GltfFrameGrid grid_to_end(double end, const Keys& keys) {
   return {rate, false, note_of(rate, why, keys)};
 }
 
-// Of several, the rate at which the keys of most of them are, of most keys if there are
-// several.
+// Returns, for several clips, the rate with the keys of most clips; of several such rates, the
+// one with most keys.
 GltfFrameGrid grid_of_most(const Keys& keys) {
   GltfFrameGrid best{{kUsual, 1}};
   std::pair<std::size_t, std::size_t> most;  // clips, keys

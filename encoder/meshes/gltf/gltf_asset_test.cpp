@@ -1,4 +1,4 @@
-// What the asset of a stream keeps of glTF files.
+// Tests the contents of glTF files that the asset of a stream keeps.
 #include <nlohmann/json.hpp>
 
 #include "common/files/binary_numbers.h"

@@ -30,7 +30,7 @@ struct Bake {
   std::string text;
 };
 
-// The diagonal of the box around all frames.
+// Returns the diagonal of the box around all frames.
 double diagonal_of(const Bake& bake) {
   double squared = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -23,7 +23,7 @@ class GltfErrorsTest : public GltfFilesTest {
     EXPECT_TRUE(error.starts_with((folder_ / "a.glb: ").string())) << error;
     expect_text(error, part);
   }
-  // Modifies a valid document in one place.
+  // Expects an error after a valid document is modified in one place.
   void expect_broken(const GltfBuilder& good, const std::function<void(Json&)>& change,
                      const std::string& part) const {
     GltfBuilder builder = good;

@@ -106,13 +106,13 @@ TEST_F(GltfPrimitiveTest, ReadsSparseAccessors) {
   builder.json["accessors"][0]["sparse"] = sparse;
   builder.json["meshes"][0]["weights"] = {1, 0};
   EXPECT_EQ(frame_of(*open(builder), 0), (std::vector<float>{5, 6, 7, 1, 4, 0, 8, 9, 10}));
-  // Targets, over what they have and over zeros.
+  // Sparse values replace the base values of targets, or zeros.
   builder.json["accessors"][0].erase("sparse");
   builder.json["accessors"][1]["sparse"] = sparse;
   EXPECT_EQ(frame_of(*open(builder), 0), (std::vector<float>{5, 6, 7, 1, 4, 0, 8, 10, 10}));
   builder.json["accessors"][1].erase("bufferView");
   EXPECT_EQ(frame_of(*open(builder), 0), (std::vector<float>{5, 6, 7, 1, 0, 0, 8, 10, 10}));
-  // Zeros, and nothing else.
+  // Targets with only zeros.
   builder.json["accessors"][1].erase("sparse");
   EXPECT_EQ(frame_of(*open(builder), 0), kCorners);
   builder.json["accessors"][0].erase("bufferView");
@@ -149,7 +149,7 @@ TEST_F(GltfPrimitiveTest, ReadsIntegersOfKhrMeshQuantization) {
 TEST_F(GltfPrimitiveTest, FollowsStrides) {
   GltfBuilder builder;
   const std::vector<float> both{0, 0, 0, 9, 1, 0,
-                                0, 9, 0, 1, 0, 9};  // with an unused number in between
+                                0, 9, 0, 1, 0, 9};  // an unused number in between
   builder.add("VEC3", both);
   builder.json["bufferViews"][0]["byteStride"] = 16;
   builder.json["accessors"][0]["count"] = 3;
@@ -157,7 +157,8 @@ TEST_F(GltfPrimitiveTest, FollowsStrides) {
   EXPECT_EQ(frame_of(*open(builder), 0), kCorners);
 }
 
-// The triangle follows two joints, 10 along x and 20 along y; the bind pose is at x - 1.
+// Builds a triangle that follows two joints, 10 along x and 20 along y; the bind pose is at x -
+// 1.
 GltfBuilder with_skin(const std::vector<std::uint8_t>& joints,
                       const std::vector<float>& weights) {
   GltfBuilder builder = one_triangle();
@@ -186,7 +187,7 @@ TEST_F(GltfPrimitiveTest, FollowsJointsByWeight) {
 TEST_F(GltfPrimitiveTest, WeightsNeedNotAddUpToOne) {
   const GltfBuilder builder =
       with_skin({0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0}, {3, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0});
-  EXPECT_EQ(frame_of(*open(builder), 0),  // without any weight: the first joint
+  EXPECT_EQ(frame_of(*open(builder), 0),  // no weights: the first joint
             (std::vector<float>{11, 0, 0, 7, 10, 0, 1, 21, 0}));
 }
 

@@ -114,7 +114,7 @@ TEST_F(GltfSourceTest, FlipsTrianglesOfMirroringNodesWithSkins) {
   builder.push("skins", {{"joints", {1}}});
   builder.json["nodes"][0]["skin"] = 0;
   EXPECT_EQ(open(builder)->triangles(), (std::vector<Triangle>{{0, 1, 2}}));
-  builder.json["nodes"][0]["scale"] = {1, -1, 1};  // which moves nothing
+  builder.json["nodes"][0]["scale"] = {1, -1, 1};  // moves nothing
   EXPECT_EQ(open(builder)->triangles(), (std::vector<Triangle>{{0, 2, 1}}));
 }
 
@@ -173,7 +173,7 @@ TEST_F(GltfSourceTest, SamplesFromTimeZeroToTheLastPose) {
   const auto later = builder.add("SCALAR", std::vector<float>{10, 11, 12.2F});
   builder.json["animations"][0]["samplers"][0]["input"] = later;
   const auto late = open(builder, {}, false, {5, 1});
-  EXPECT_EQ(late->num_frames(), 62U);  // as 12.2 is to a float
+  EXPECT_EQ(late->num_frames(), 62U);  // 12.2 as a float
   EXPECT_FLOAT_EQ(frame_of(*late, 0)[0], 0);
   EXPECT_FLOAT_EQ(frame_of(*late, 50)[0], 0);
   EXPECT_FLOAT_EQ(frame_of(*late, 55)[0], 1);
@@ -192,7 +192,7 @@ TEST_F(GltfSourceTest, ChoosesAnimations) {
   const FrameRate one{1, 1};
   EXPECT_EQ(open(builder, {}, false, one)->num_frames(), 3U);
   EXPECT_EQ(open(builder, {"Move"}, false, one)->num_frames(), 3U);
-  for (const std::string second : {"1", "0"}) {  // by name before by index
+  for (const std::string second : {"1", "0"}) {  // names come before indices
     const auto source = open(builder, {second}, false, one);
     EXPECT_EQ(source->num_frames(), 3U);
     EXPECT_EQ(frame_of(*source, 0)[1], 7);
@@ -254,7 +254,7 @@ TEST_F(GltfSourceTest, MovesRotatesAndScalesNodes) {
   track("scale", "VEC3", {1, 1, 1, 3, 3, 3}, "LINEAR");
   track("translation", "VEC3", {0, 0, 5, 9, 9, 9}, "STEP");
   const auto source = open(builder, {}, false, {1, 1});
-  // Half way: rotated by 90 degrees, twice the size, translation not yet applied.
+  // Half way, it is rotated by 90 degrees and twice the size; translation is not yet applied.
   expect_near(frame_of(*source, 1), {0, 0, 5, 0, 2, 5, -2, 0, 5});
   expect_near(frame_of(*source, 2), {9, 9, 9, 6, 9, 9, 9, 6, 9});
 }
@@ -308,7 +308,7 @@ TEST_F(GltfSourceTest, ListsWhatItDrops) {
   builder.json["textures"] = Json::array({Json::object()});
   const auto source = open(builder);
   EXPECT_TRUE(source->notes().empty());
-  EXPECT_EQ(source->attributes().sets.size(), 4U);  // and material, as the triangle has none
+  EXPECT_EQ(source->attributes().sets.size(), 4U);  // material too, as the triangle has none
   EXPECT_TRUE(source->asset().starts_with("glTF"));
   attributes["TANGENT"] = colours;
   attributes["_HEAT"] = colours;
@@ -334,7 +334,7 @@ TEST_F(GltfSourceTest, RefusesEmptyMeshes) {
   flat.add_root(
       {{"mesh", flat.add_mesh({{"attributes", {{"POSITION", flat.add("VEC3", xyz)}}}})}});
   expect_text(error_of(flat), "all of them are degenerate");
-  EXPECT_EQ(open(flat)->triangles().size(), 1U);  // without welding, its corners differ
+  EXPECT_EQ(open(flat)->triangles().size(), 1U);  // not welded: its corners differ
 }
 
 TEST_F(GltfSourceTest, WeldsByDefault) {

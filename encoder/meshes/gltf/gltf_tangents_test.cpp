@@ -35,7 +35,7 @@ void expect(const TangentCount& found, std::uint64_t apart, std::uint64_t invert
 TEST(Tangents, ThoseOfTextureCoordinatesAreEqual) {
   Square square;
   expect(square.count({1, 0, 0, 1}), 0, 0);
-  expect(square.count({2, 0.1F, 0.5F, 1}), 0, 0);  // of any length, and off the surface
+  expect(square.count({2, 0.1F, 0.5F, 1}), 0, 0);  // any length, and off the surface
   EXPECT_EQ(tangent_note(square.count({1, 0, 0, 1})), "");
 }
 
@@ -97,7 +97,7 @@ TEST(Tangents, CurvedSurfacesHaveMeansOfTheirTriangles) {
 
 class TangentFiles : public GltfFilesTest {
  protected:
-  // A triangle with these tangents, in a material with or without a normal map.
+  // Builds a triangle with these tangents, in a material with or without a normal map.
   static GltfBuilder triangle(const std::vector<float>& tangents, bool has_relief) {
     GltfBuilder builder = one_triangle();
     auto& primitive = builder.json["meshes"][0]["primitives"][0];

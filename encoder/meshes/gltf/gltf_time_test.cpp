@@ -1,5 +1,5 @@
-// When frames of glTF animations are: from time 0 to the last key, at a rate that fits the
-// keys.
+// Tests the times of frames of glTF animations: from time 0 to the last key, at a rate that
+// fits the keys.
 
 #include <gtest/gtest.h>
 
@@ -18,14 +18,14 @@
 namespace rlpc {
 namespace {
 
-// One channel: what a node's x or its scale along x does.
+// One channel: a node's x, or its scale along x.
 struct Track {
   std::string interpolation = "LINEAR";
   std::vector<float> times;
   std::vector<float> values;    // one per time
   std::vector<float> tangents;  // cubic: into and out of each
 
-  // The value at a time, from glTF 2.0, appendix C, without our reader.
+  // Returns the value at a time by glTF 2.0, appendix C, without our reader.
   double at(double time) const {
     if (time <= times.front()) return values.front();
     if (time >= times.back()) return values.back();
@@ -221,7 +221,7 @@ TEST_F(GltfTimeTest, EqualTimesAreAnError) {
   expect_text(error_of(file_of({{track, track}})), "expected a time after the one before, 1");
 }
 
-// Random animations; what comes out is computed from the keys alone.
+// Tests random animations; results are computed from the keys alone.
 class RandomTimes : public GltfTimeTest {
  protected:
   double real(double low, double high) {
@@ -272,7 +272,7 @@ class RandomTimes : public GltfTimeTest {
     return made;
   }
 
-  // Whether a value is that of the track at a time, which rounding may have moved a little.
+  // Expects a value of the track at a time, which rounding may have moved a little.
   static void expect_at(const Track& track, double time, double slack, double value) {
     double low = 1e9;
     double high = -1e9;

@@ -17,7 +17,7 @@ double sample_one(const GltfTrack& track, double time) {
   return value;
 }
 
-// A rotation by `degrees` about z, as a quaternion of any length.
+// Returns a rotation by `degrees` about z, as a quaternion of any length.
 std::vector<float> turn(double degrees, double length = 1.0) {
   const double half = degrees / 2 * 3.14159265358979323846 / 180;
   return {0, 0, static_cast<float>(std::sin(half) * length),
@@ -33,7 +33,7 @@ GltfTrack turns(const std::vector<std::vector<float>>& quaternions, Interpolatio
   return track;
 }
 
-// The angle about z in degrees; q and -q are the same rotation.
+// Returns the angle about z in degrees; q and -q are the same rotation.
 double degrees_of(const GltfQuaternion& q) {
   EXPECT_NEAR(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], 1.0, 1e-12);
   return 2 * std::atan2(q[2], q[3]) * 180 / 3.14159265358979323846;
@@ -140,7 +140,7 @@ TEST(GltfTrack, SlerpAgreesWithTheLibrary) {
     double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
     for (double& x : b) x = dot < 0 ? -x : x;
     const double angle = std::acos(std::min(std::abs(dot), 1.0));
-    if (angle < 0.01) continue;  // where an arc cosine is inexact
+    if (angle < 0.01) continue;  // an arc cosine is inexact here
     const GltfQuaternion got = sample_rotation(turns(q, Interpolation::kLinear), 0.3);
     for (std::size_t i = 0; i < 4; ++i) {
       const double want =

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// The elements of an array; none of anything else.
+// Returns the elements of an array; none of other values.
 const Json& elements(const Json& value, const char* key) {
   static const Json kNone = Json::array();
   const Json& found = gltf_member(value, key);
@@ -34,7 +34,7 @@ std::string counted(std::size_t count, const std::string& one, const std::string
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-// Of sets with numbers, those are read that have all numbers from 0.
+// Whether a set is read: sets with numbers are, if all lower numbers exist.
 bool is_read(const std::string& name, const Json& attributes) {
   if (name == "POSITION" || name == "NORMAL" || name == "TANGENT") return true;
   for (const char* const set : {"TEXCOORD_", "COLOR_", "JOINTS_", "WEIGHTS_"}) {
@@ -102,7 +102,7 @@ class LossFinder {
     }
   }
 
-  // Whether a track changes a target, and that from key to key or between them.
+  // Whether a track changes a target, from key to key or between them.
   static bool moves(const GltfTrack& track, std::size_t target) {
     const bool is_cubic = track.interpolation == GltfInterpolation::kCubicSpline;
     const std::size_t row = track.width;
@@ -176,7 +176,7 @@ class LossFinder {
     }
   }
 
-  // Nodes without content, which programs use as places to attach something to.
+  // Adds nodes without content, which programs use as places to attach something to.
   void add_empty_nodes() {
     std::set<std::uint32_t> joints;
     for (const GltfModel::Skin& skin : model_.skins) {
@@ -202,13 +202,13 @@ class LossFinder {
     }
   }
 
-  // Who made the file, under which terms.
+  // Adds who made the file, and under which terms.
   void add_asset() {
     const Json& asset = gltf_member(root_, "asset");
     if (!asset.is_object()) return;
     std::vector<std::string> names;
     for (const auto& [key, unused] : asset.items()) {
-      // The generator is noted by itself: nearly every file has one.
+      // The generator is noted separately: nearly every file has one.
       static const std::set<std::string_view> kOthers{"version", "minVersion", "generator",
                                                       "extras", "extensions"};
       if (kOthers.contains(key)) continue;
@@ -217,7 +217,7 @@ class LossFinder {
     if (!names.empty()) found_.push_back("asset information (" + joined(names) + ")");
   }
 
-  // Extensions and extras anywhere in a value. kind: the array of the document it is in.
+  // Finds extensions and extras anywhere in a value. kind: the array of the document it is in.
   void walk(const std::string& kind, const Json& value) {
     std::vector<const Json*> open{&value};
     while (!open.empty()) {
@@ -245,11 +245,11 @@ class LossFinder {
         "KHR_mesh_quantization", "KHR_animation_pointer", "EXT_meshopt_compression",
         "KHR_meshopt_compression", "KHR_draco_mesh_compression"};
     if (kKnown.contains(name)) return true;
-    // These are named where the document has a list of them.
+    // The list of the document names these.
     if (name == "KHR_lights_punctual" || name == "KHR_materials_variants") {
       return !gltf_member(gltf_member(root_, "extensions"), name.c_str()).is_null();
     }
-    // These are named where the document says that it uses them.
+    // The document names these as used.
     if (name != "EXT_mesh_gpu_instancing" && name != "KHR_node_visibility" &&
         name != "MSFT_lod") {
       return false;
@@ -269,7 +269,7 @@ class LossFinder {
   void add_extras(const Json& value, const std::string& kind) {
     const Json& extras = gltf_member(value, "extras");
     if (extras.is_null()) return;
-    // Read: names of morph targets, and the frame rate that rlpcdec writes.
+    // Names of morph targets are read, and the frame rate that rlpcdec writes.
     const char* const read = kind == "meshes"  ? "targetNames"
                              : kind == "asset" ? "frame_rate"
                                                : "";
@@ -281,7 +281,7 @@ class LossFinder {
   const GltfModel& model_;
   std::vector<std::string> found_;
   std::set<std::string> extensions_;
-  std::set<std::string> extras_;  // what has them
+  std::set<std::string> extras_;  // kinds of values with extras
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What glTF documents have that streams do not.
+// Contents of glTF documents that streams cannot hold.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,13 +9,13 @@
 
 namespace rlpc {
 
-// Names what the reader leaves out, in the words of users, once each: attributes, morph targets
-// and what else belongs to meshes, nodes, extensions, extras. Materials and textures are kept;
-// what GltfDocument::dropped has is not repeated. root: the document, valid where it is read.
+// Names the contents that the reader leaves out, in the words of users, once each: attributes,
+// morph targets and other parts of meshes, nodes, extensions, extras. Materials and textures
+// are kept; GltfDocument::dropped is not repeated. root: the document, valid where it is read.
 std::vector<std::string> gltf_losses(const nlohmann::json& root, const GltfModel& model);
 
-// What a channel that targets no property of a node animates, by its JSON pointer; empty: it
-// has none.
+// Names what a channel that targets no property of a node animates, by its JSON pointer; empty:
+// no pointer.
 std::string pointer_target(const std::string& pointer);
 
 }  // namespace rlpc

@@ -20,7 +20,7 @@ using std::to_string;
 
 class ModelReader {
  public:
-  // relief: of relief_of_materials().
+  // relief: from relief_of_materials().
   ModelReader(GltfDocument document, std::vector<std::optional<std::size_t>> relief,
               GltfFile& file, const GltfLimits& limits, GltfMemory& memory, GltfErrors& errors)
       : document_(std::move(document)),
@@ -162,7 +162,8 @@ class ModelReader {
     }
   }
 
-  // Includes what the source and welding need per vertex and triangle.
+  // Counts an instance, with the memory that the source and welding need per vertex and
+  // triangle.
   bool takes_instance(const GltfPrimitive& primitive, std::uint64_t num_vertices,
                       std::size_t geometry) {
     constexpr std::uint64_t kOfVertex = 128;
@@ -173,7 +174,7 @@ class ModelReader {
                                             kOfTriangle * num_triangles);
   }
 
-  // Shared by nodes with the same mesh and skin.
+  // Returns the geometry, which nodes with the same mesh and skin share.
   std::size_t geometry_of(const GltfPrimitive& primitive, std::optional<std::uint32_t> skin) {
     const auto [known, is_new] =
         geometries_.try_emplace({&primitive, skin}, model_.geometries.size());
@@ -200,8 +201,8 @@ class ModelReader {
   std::uint64_t num_without_triangles_ = 0;
 };
 
-// What of a material needs tangents: its normal map; that of its clear coat; anisotropy, whose
-// direction is relative to them, with or without a texture. Null: nothing does.
+// Returns the part of a material that needs tangents: its normal map; that of its clear coat;
+// anisotropy, whose direction is relative to them, with or without a texture. Null: no part.
 const nlohmann::json& relief_of(const nlohmann::json& material) {
   const auto& map = gltf_member(material, "normalTexture");
   if (!map.is_null()) return map;
@@ -214,8 +215,8 @@ const nlohmann::json& relief_of(const nlohmann::json& material) {
   return its_map.is_null() ? anisotropy : its_map;
 }
 
-// The number of the texture coordinates that tangents of each material belong to; none: it has
-// no use for them. Materials may be anything here: their readers check them.
+// Returns the number of the texture coordinates that tangents of each material belong to; none:
+// it has no use for them. Materials may be anything here: their readers check them.
 std::vector<std::optional<std::size_t>> relief_of_materials(const nlohmann::json& root,
                                                             std::size_t num_materials) {
   std::vector<std::optional<std::size_t>> relief(num_materials);
@@ -233,7 +234,7 @@ std::vector<std::optional<std::size_t>> relief_of_materials(const nlohmann::json
   return relief;
 }
 
-// Extras may be anything: nothing in them is an error.
+// Returns the frame rate in extras, which may be anything: nothing in them is an error.
 std::optional<FrameRate> frame_rate_of(const nlohmann::json& root) {
   const nlohmann::json* value = &root;
   for (const char* const key : {"asset", "extras", "frame_rate"}) {
@@ -276,7 +277,7 @@ InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLi
     model.notes.emplace_back(
         "the stream does not say which program wrote the file (asset.generator)");
   }
-  // The asset is another tree, and its text.
+  // Count the asset, which is another tree, and its text.
   memory.take("materials", file->document_bytes);
   if (errors) return errors.first();
   GltfAsset asset = make_gltf_asset(*file->json, model, *file, options.textures, memory);

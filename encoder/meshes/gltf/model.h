@@ -53,12 +53,12 @@ struct GltfModel {
   std::optional<FrameRate> frame_rate;  // asset.extras.frame_rate, "N/D", as rlpcdec writes it
   std::vector<std::string> notes;       // see FrameSource
   std::vector<std::string> dropped;     // contents that are not read: "cameras"
-  std::vector<std::string> files;       // likewise
-  std::string asset;                    // likewise
-  std::uint64_t memory_bytes = 0;  // of the model and of the source made from it, estimated
+  std::vector<std::string> files;       // see FrameSource
+  std::string asset;                    // see FrameSource
+  std::uint64_t memory_bytes = 0;       // estimate for the model and the source made from it
 };
 
-// animations, textures and max_memory_bytes of the options are used.
+// Reads a document; of the options, uses path, animations, textures and max_memory_bytes.
 InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLimits& limits);
 
 }  // namespace rlpc

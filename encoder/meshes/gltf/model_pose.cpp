@@ -15,7 +15,7 @@ GltfVec3 linear(const Affine& map, const GltfVec3& n) {
   return image;
 }
 
-// The direction of the inverse transpose.
+// Returns the image of a normal: the direction of the inverse transpose.
 GltfVec3 normal_image(const Affine& map, const GltfVec3& n) {
   const auto& m = map.row;
   const double sign = determinant(map) < 0.0 ? -1.0 : 1.0;

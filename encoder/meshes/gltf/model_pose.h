@@ -1,4 +1,4 @@
-// What a pose means for the meshes of a model: weights of morph targets, maps of joints.
+// Applies a pose to the meshes of a model: weights of morph targets, maps of joints.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace rlpc {
 
-// Of the targets of the mesh of a node.
+// Returns the weights of the targets of the mesh of a node.
 const std::vector<double>& target_weights(const GltfModel& model, std::uint32_t node,
                                           const GltfPose& pose);
-// [joint of the skin], maps from the mesh to scene coordinates.
+// Returns maps from the mesh to scene coordinates, [joint of the skin].
 std::vector<Affine> joint_maps(const GltfModel& model, std::uint32_t skin,
                                const GltfPose& pose);
 
@@ -30,14 +30,15 @@ class PosedModel {
  private:
   const GltfModel& model_;
   const GltfPose& pose_;
-  std::map<std::uint32_t, std::vector<Affine>> joints_;  // by skin
+  std::map<std::uint32_t, std::vector<Affine>> joints_;  // [skin]
   std::vector<double> morphed_;
   std::vector<double> placed_;
 };
 
-// The normals of all vertices, in the order of instances, as viewers make them in a pose: those
-// of skins by the linear part of the weighted joints, others by the inverse transpose of their
-// node's map, both after morph targets; of length 1, or zero, as where a primitive has none.
+// Returns the normals of all vertices, in the order of instances, as viewers compute them in a
+// pose: for skins by the linear part of the weighted joints, for others by the inverse
+// transpose of their node's map, both after morph targets; of length 1, or zero, as where a
+// primitive has none.
 std::vector<float> posed_normals(const GltfModel& model, const GltfPose& pose);
 
 }  // namespace rlpc

@@ -14,11 +14,11 @@ namespace rlpc {
 
 struct GltfPose {
   std::vector<Affine> to_scene;  // [node], its map to scene coordinates
-  // By node, for nodes whose weights are animated: [num_targets of the mesh].
+  // [node], only nodes whose weights are animated: [num_targets of the mesh].
   std::map<std::uint32_t, std::vector<double>> weights;
 };
 
-// The pose at a time of the clip. clip: null for the pose without animation.
+// Returns the pose at a time of the clip. clip: null for the pose without animation.
 GltfPose pose_of(const std::vector<GltfNode>& nodes, const GltfScene& scene,
                  const GltfClip* clip, double time);
 

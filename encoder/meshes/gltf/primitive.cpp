@@ -44,7 +44,7 @@ class GeometryReader {
     return false;
   }
 
-  // A growing vector takes three times its memory, here and below.
+  // Counts deltas: a growing vector takes three times its memory, here and below.
   bool takes_deltas(std::uint32_t accessor) {
     const GltfAccessor& a = values_.accessor(accessor);
     const std::uint64_t count = a.base ? a.count : a.sparse ? a.sparse->count : 0;
@@ -81,7 +81,7 @@ class GeometryReader {
       read.max_value = accessor.component == GltfComponent::kU8 ? 255 : 65535;
       for (float& x : read.values) x = std::round(x * static_cast<float>(read.max_value));
     } else if (is_colour) {
-      // glTF 2.0, 3.7.2.1. Others would make the steps of all colours larger.
+      // Clamp colours (glTF 2.0, 3.7.2.1): others would make the steps of all colours larger.
       for (float& x : read.values) {
         const float clamped = std::clamp(x, 0.0F, 1.0F);
         if (clamped != x) ++geometry.num_clamped;
@@ -91,7 +91,7 @@ class GeometryReader {
     geometry.attributes.push_back(std::move(read));
   }
 
-  // The tangents, which are left out, with what viewers compute in their place.
+  // Compares the tangents, which are left out, with those that viewers compute instead.
   void compare(std::size_t relief_uv, GltfGeometry& geometry) {
     const auto values_of = [&](const std::string& semantic) {
       const auto found = std::find_if(geometry.attributes.begin(), geometry.attributes.end(),
@@ -168,7 +168,7 @@ class GeometryReader {
     }
   }
 
-  // The vertices in the order of the index list.
+  // Returns the vertices in the order of the index list.
   std::vector<std::uint32_t> corners(std::uint32_t num_vertices) {
     if (!primitive_.indices) {
       std::vector<std::uint32_t> all(num_vertices);

@@ -37,19 +37,20 @@ struct GltfGeometry {
   struct Attribute {
     std::string semantic;  // "TEXCOORD_0"
     std::uint32_t width = 0;
-    std::uint32_t max_value = 0;  // of normalised integers, otherwise 0
-    std::vector<float> values;    // [vertex][width]; of normalised integers, these
+    std::uint32_t max_value = 0;  // maximum of normalised integers, otherwise 0
+    std::vector<float> values;    // [vertex][width]; normalised integers as integers
   };
   std::vector<Attribute> attributes;
-  TangentCount tangents;          // of primitives whose material needs tangents
+  TangentCount tangents;          // counted if the material needs tangents
   std::uint64_t num_clamped = 0;  // numbers of colours outside 0 to 1, which are clamped
 
   std::uint32_t num_vertices() const { return static_cast<std::uint32_t>(base.size() / 3); }
 };
 
 // num_joints: joints of the skin; 0: no skin, influences are not read. relief_uv: number of the
-// texture coordinates that a normal map, or what else needs tangents, uses; none: nothing does.
-// Joints and indices of the result are in range. Complete only if there are no errors.
+// texture coordinates that a normal map, or another texture that needs tangents, uses; none: no
+// such texture. Joints and indices of the result are in range. Complete only if there are no
+// errors.
 GltfGeometry read_gltf_geometry(const GltfPrimitive& primitive, std::size_t num_joints,
                                 std::optional<std::size_t> relief_uv, GltfValues& values,
                                 GltfErrors& errors);
@@ -59,7 +60,7 @@ GltfGeometry read_gltf_geometry(const GltfPrimitive& primitive, std::size_t num_
 void morph(std::span<const float> base, std::span<const GltfGeometry::Target> targets,
            std::span<const double> weights, std::vector<double>& out);
 
-// Maps positions to the scene, by the map of a node or the weighted maps of joints. out: 3
+// Map positions to the scene, by the map of a node or the weighted maps of joints. out: 3
 // values per vertex.
 void place(const std::vector<double>& positions, const Affine& node, std::span<double> out);
 void place_by_joints(const GltfGeometry& geometry, const std::vector<double>& positions,

@@ -9,9 +9,9 @@ namespace {
 
 constexpr std::uint32_t kMostExamined = 4096;               // fixed: frames, for time
 constexpr std::size_t kMostVolumes = std::size_t{1} << 20;  // fixed: memory, and time
-constexpr double kShown = 0.125;  // fixed: of the largest volume; half of the size
+constexpr double kShown = 0.125;  // fixed: part of the largest volume; half of the size
 
-// The nodes that place vertices: those of instances without skin, and joints.
+// Returns the nodes that place vertices: those of instances without skin, and joints.
 std::vector<std::uint32_t> placing_nodes(const GltfModel& model) {
   std::vector<std::uint32_t> nodes;
   std::vector<bool> is_taken(model.skins.size());  // many instances may have the same skin
@@ -38,7 +38,7 @@ class NodeVolumes {
       volumes_[n][i] = determinant(pose.to_scene[nodes_[n]]);
     }
   }
-  // Index of the frame in which node n is largest, the first of several.
+  // Returns the frame in which node n is largest, the first of several.
   std::size_t largest(std::size_t n) const {
     const auto found = std::max_element(
         volumes_[n].begin(), volumes_[n].end(),
@@ -50,9 +50,9 @@ class NodeVolumes {
     const std::size_t n = index_of(node);
     return volumes_[n][largest(n)] < 0.0;
   }
-  // Whether a node has both signs in frames in which it can be seen.
+  // Whether a node has both signs in frames in which it is visible.
   bool turns_over(std::uint32_t node) const {
-    constexpr double kVisible = 1e-6;  // fixed: of the largest volume; a hundredth of the size
+    constexpr double kVisible = 1e-6;  // fixed: of the largest volume: a hundredth of the size
     const std::size_t n = index_of(node);
     const double least = kVisible * size(n, largest(n));
     const auto has = [&](double sign) {
@@ -73,7 +73,7 @@ class NodeVolumes {
   std::vector<std::vector<double>> volumes_;  // [node][frame]
 };
 
-// Frames examined at equal distances, the first and the last among them.
+// Returns frames at equal distances to examine, including the first and the last.
 std::vector<std::uint32_t> spread_out(std::uint32_t num_frames, std::size_t count) {
   std::vector<std::uint32_t> frames{0};
   for (std::size_t i = 1; i < count; ++i) {
@@ -99,7 +99,7 @@ SampledPoses sample_poses(const GltfModel& model, std::uint32_t num_frames, std:
     sampled.is_mirrored.push_back(volumes.is_mirrored(instance.node));
     if (!instance.skin && volumes.turns_over(instance.node)) ++sampled.num_turning_over;
   }
-  // Half of them at equal distances, the others where nodes are largest.
+  // Half of the frames are at equal distances, the others where nodes are largest.
   std::vector<std::size_t> chosen{0};
   const std::vector<std::uint32_t> even = spread_out(num_frames, 1 + (most + 1) / 2);
   for (const std::uint32_t f : even) {

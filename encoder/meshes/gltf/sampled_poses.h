@@ -1,4 +1,4 @@
-// Poses of the sequence in which all parts of a scene can be seen.
+// Samples poses of the sequence so that each part of a scene is visible in one of them.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,13 @@ struct SampledPoses {
   std::vector<Later> later;  // frames after the first, ascending
   // [instance], whether its node mirrors in the frame in which it is largest.
   std::vector<bool> is_mirrored;
-  // Instances that are mirrored in some frames, and not in others.
+  // Number of instances that are mirrored in some frames and not in others.
   std::size_t num_turning_over = 0;
 };
 
-// Samples frames at equal distances, and for each node that is much smaller in these than in
-// some other frame, that one. pose_at: of a frame. most: number of frames after the first.
-// Time: that of evaluating the nodes of some thousand frames.
+// Samples frames at equal distances and, for each node that is much smaller in these than in
+// some other frame, that frame. pose_at: returns the pose of a frame. most: number of frames
+// after the first. Takes as long as evaluating the nodes of some thousand frames.
 SampledPoses sample_poses(const GltfModel& model, std::uint32_t num_frames, std::size_t most,
                           const std::function<GltfPose(std::uint32_t)>& pose_at);
 

@@ -23,7 +23,7 @@ std::vector<std::optional<std::uint32_t>> find_parents(const std::vector<GltfNod
   return parent;
 }
 
-// The nodes below `roots`, each before its children, which keep their order.
+// Returns the nodes below `roots`, each before its children, which keep their order.
 std::vector<std::uint32_t> depth_first(const std::vector<GltfNode>& nodes,
                                        const std::vector<std::uint32_t>& roots) {
   std::vector<std::uint32_t> order;
@@ -38,8 +38,8 @@ std::vector<std::uint32_t> depth_first(const std::vector<GltfNode>& nodes,
   return order;
 }
 
-// A node that is its own ancestor. All nodes must have at most one parent, and not all may be
-// below a root.
+// Returns a node that is its own ancestor. All nodes must have at most one parent, and not all
+// may be below a root.
 std::uint32_t node_of_cycle(const GltfScene& scene) {
   std::vector<bool> reached(scene.parent.size());
   for (const std::uint32_t node : scene.parents_first) reached[node] = true;

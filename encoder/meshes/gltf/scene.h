@@ -12,7 +12,7 @@ namespace rlpc {
 struct GltfScene {
   std::vector<std::optional<std::uint32_t>> parent;  // [node]
   std::vector<std::uint32_t> parents_first;          // all nodes, parents before children
-  std::vector<std::uint32_t> with_mesh;              // nodes of the scene with a mesh, likewise
+  std::vector<std::uint32_t> with_mesh;              // nodes with a mesh, in the same order
 };
 
 // Errors: a node with two parents, a cycle, a scene that lists a node with a parent.

@@ -20,7 +20,7 @@ namespace {
 
 using std::to_string;
 
-// The first frame of each clip in the sequence, then the total number of frames.
+// Returns the first frame of each clip in the sequence, then the total number of frames.
 InputResult<std::vector<std::uint32_t>> first_frames(const GltfModel& model,
                                                      const GltfFrameGrid& grid,
                                                      const std::string& path,
@@ -51,17 +51,18 @@ GltfPose pose_at(const GltfModel& model, const std::vector<std::uint32_t>& first
   return pose_of(model.nodes, model.scene, clip, time);
 }
 
-// Normals of so many frames are compared, or of fewer of large models.
+// Returns the number of frames whose normals are compared; fewer for large models.
 std::size_t frames_with_normals(const GltfModel& model, std::uint64_t max_memory_bytes) {
   constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 27;  // fixed: memory
-  constexpr std::uint64_t kPart = 64;                           // fixed: of the limit
+  constexpr std::uint64_t kPart = 64;                           // fixed: divides the limit
   constexpr std::uint64_t kMost = 15;                           // fixed: time
   const std::uint64_t bytes = std::min(kMostBytes, max_memory_bytes / kPart);
   return std::clamp<std::uint64_t>(bytes / (3 * sizeof(float) * model.num_vertices), 2, kMost);
 }
 
-// Mirroring nodes flip triangles, so that they keep facing the same side (glTF 2.0, 3.7.2.1);
-// those of skinned meshes, too, although joints alone place their vertices.
+// Returns the triangles. Mirroring nodes flip them, so that they keep facing the same side
+// (glTF 2.0, 3.7.2.1); also nodes of skinned meshes, although joints alone place their
+// vertices.
 std::vector<Triangle> triangles_of(const GltfModel& model,
                                    const std::vector<bool>& is_mirrored) {
   std::vector<Triangle> triangles;
@@ -76,7 +77,7 @@ std::vector<Triangle> triangles_of(const GltfModel& model,
   return triangles;
 }
 
-// What a clip table calls an animation.
+// Returns the name of an animation in a clip table.
 std::string clip_name(const std::string& name, std::size_t number) {
   std::string text;
   for (std::size_t at = 0; at < name.size();) {
@@ -92,7 +93,7 @@ std::string clip_name(const std::string& name, std::size_t number) {
   return text.empty() ? "animation " + to_string(number) : text;
 }
 
-// None of a single animation without a name: all frames need no name.
+// Returns the clips; none for a single animation without a name.
 std::vector<Clip> clips_of(const GltfModel& model, const std::vector<std::uint32_t>& first) {
   std::vector<Clip> clips;
   if (model.clips.size() == 1 && model.clips[0].name.empty()) return clips;
@@ -190,7 +191,7 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   shape.files = model->files;
   shape.clips = clips_of(*model, *first_frame);
   shape.memory_bytes = model->memory_bytes;
-  // With decoded positions of these frames.
+  // Decoded positions of these frames are kept too.
   for (const PosedNormals& later : shape.attributes.later_normals)
     shape.memory_bytes += 4 * sizeof(float) * later.normals.size();
   if (!options.weld) drop_degenerate(shape);

@@ -29,7 +29,8 @@ GltfVec3 cross(const GltfVec3& a, const GltfVec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// Of length 1, at a right angle to a unit normal; zero if there is none.
+// Returns the direction of v at a right angle to a unit normal, of length 1; zero if there is
+// none.
 GltfVec3 along_surface(GltfVec3 v, const GltfVec3& normal) {
   const double off = dot(v, normal);
   for (std::size_t c = 0; c < 3; ++c) v[c] -= off * normal[c];
@@ -38,15 +39,14 @@ GltfVec3 along_surface(GltfVec3 v, const GltfVec3& normal) {
   return v;
 }
 
-// How a triangle moves with the first and the second texture coordinate.
+// Directions in a triangle along the first and the second texture coordinate.
 struct FaceTangent {
   GltfVec3 along{};
   GltfVec3 across{};
 };
 
-// Corners with the same position, normal and coordinates share a tangent, those of each hand.
-// In glTF, the second coordinate points down: where it is to the left of the first, the tangent
-// has w = -1.
+// Corners with the same position, normal, coordinates and handedness share a tangent. In glTF,
+// the second coordinate points down: if it is to the left of the first, the tangent has w = -1.
 struct Key {
   std::array<float, 8> values{};
   bool is_left = false;

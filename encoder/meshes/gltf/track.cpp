@@ -11,12 +11,11 @@ namespace rlpc {
 
 namespace {
 
-// A time relative to the keys of a track: the fraction `part` of the way from `key` to the
-// next.
+// A time relative to the keys of a track: `part` of the way from `key` to the next.
 struct Place {
   std::size_t key = 0;
   double part = 0.0;      // 0 where the value is held
-  double duration = 0.0;  // from `key` to the next, seconds
+  double duration = 0.0;  // seconds from `key` to the next
 };
 
 Place find_place(const GltfTrack& track, double time) {
@@ -34,7 +33,7 @@ double length_of(const GltfQuaternion& q) {
   return std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
 }
 
-// Appendix C.4 of glTF 2.0.
+// Interpolates on the sphere (glTF 2.0, appendix C.4).
 GltfQuaternion slerp(const GltfQuaternion& a, GltfQuaternion b, double part) {
   double dot = 0.0;
   for (std::size_t i = 0; i < 4; ++i) dot += a[i] * b[i];
@@ -57,7 +56,7 @@ GltfQuaternion slerp(const GltfQuaternion& a, GltfQuaternion b, double part) {
   return unit_quaternion(result);
 }
 
-// The value of a key, without its tangents.
+// Returns the value of a key, without its tangents.
 const float* value_at(const GltfTrack& track, std::size_t key) {
   if (track.interpolation != GltfInterpolation::kCubicSpline) {
     return &track.values[key * track.width];

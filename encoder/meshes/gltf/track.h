@@ -24,7 +24,7 @@ void sample(const GltfTrack& track, double time, std::span<double> out);
 // arc.
 GltfQuaternion sample_rotation(const GltfTrack& track, double time);
 
-// Normalises a quaternion; zero gives the identity.
+// Normalises a quaternion; zero becomes the identity.
 GltfQuaternion unit_quaternion(const GltfQuaternion& q);
 
 }  // namespace rlpc

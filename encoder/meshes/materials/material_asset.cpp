@@ -29,7 +29,7 @@ class AssetMaker {
         materials.names.begin(), materials.names.end(),
         [&](const std::string& name) { return described.find(name) != described.end(); });
     if (!file.dropped.empty()) made_.notes.push_back(std::move(file.dropped));
-    // A name alone tells nothing apart.
+    // A single name distinguishes nothing.
     if (!describes && materials.names.size() < 2 && materials.part_names.size() < 2) {
       return std::move(made_);
     }
@@ -47,7 +47,7 @@ class AssetMaker {
   }
 
  private:
-  // OBJ has no culling, and metalness only as an extension.
+  // Returns a material. OBJ has no culling, and metalness only as an extension.
   Json json_of(const Mtl& mtl) {
     Json pbr = {{"metallicFactor", mtl.metalness.value_or(0.0)}};
     if (mtl.roughness) pbr["roughnessFactor"] = *mtl.roughness;
@@ -55,7 +55,7 @@ class AssetMaker {
     if (const Json image = texture(mtl.base_image); !image.is_null()) {
       pbr["baseColorTexture"] = image;
     }
-    // Kd beside a texture is seldom meant as a factor.
+    // Kd with a texture is seldom meant as a factor.
     const MtlColour white{1.0, 1.0, 1.0};
     const MtlColour base = pbr.contains("baseColorTexture") ? white : mtl.base.value_or(white);
     const double opacity = mtl.opacity.value_or(1.0);
@@ -78,7 +78,7 @@ class AssetMaker {
     return material;
   }
 
-  // Null: there is no such image.
+  // Returns the texture of a map; null: no such image.
   Json texture(const MtlMap& map) {
     if (map.name.empty() || !textures_) return nullptr;
     const auto [place, is_new] = textures_of_names_.try_emplace(map.name, nullptr);
@@ -88,7 +88,7 @@ class AssetMaker {
       return info;
     }
     constexpr const char* kTransform = "KHR_texture_transform";
-    // There, v points down.
+    // In glTF, v points down.
     info["extensions"][kTransform] = {
         {"scale", map.scale}, {"offset", {map.offset[0], 1.0 - map.scale[1] - map.offset[1]}}};
     asset_.root["extensionsUsed"] = {kTransform};
@@ -100,7 +100,7 @@ class AssetMaker {
       made_.notes.push_back("texture " + rlpc::quoted(name) + " is not carried: " + why);
       return Json();
     };
-    // As Windows writes it.
+    // Separators as Windows writes them.
     std::string file = name;
     std::replace(file.begin(), file.end(), '\\', '/');
     if (!stays_below(folder_, file)) return leave_out("it is not in the folder of the mesh");
@@ -136,7 +136,7 @@ class AssetMaker {
 }  // namespace
 
 std::uint64_t material_asset_bytes(const SourceMaterials& materials) {
-  // Texts and the tree of a material with all members; of the name of a part.
+  // Bytes of texts and tree of a material with all members, and of the name of a part.
   constexpr std::uint64_t kOfMaterial = 8192;
   constexpr std::uint64_t kOfName = 1024;
   constexpr std::uint64_t kOfByte = 8;

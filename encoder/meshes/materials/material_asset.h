@@ -10,19 +10,19 @@
 namespace rlpc {
 
 struct MaterialAsset {
-  std::string glb;                 // empty: there is nothing to keep
+  std::string glb;                 // empty: nothing to keep
   std::vector<std::string> files;  // images that were read
   std::vector<std::string> notes;  // about images and parameters that are not kept
 };
 
-// Returns an upper bound of the memory for make_material_asset() without images. Cost: linear
-// in the number of names.
+// Returns an upper bound of the memory for make_material_asset() without images. Takes time
+// linear in the number of names.
 std::uint64_t material_asset_bytes(const SourceMaterials& materials);
 
-// Names of materials and parts; of materials that the .mtl text describes, base colour,
-// opacity, emission, roughness and metalness in the terms of glTF, and the images for these and
-// for normals. folder: of the mesh; images elsewhere are not read. textures: false leaves
-// images out. max_bytes: of all images.
+// Makes an asset with the names of materials and parts and, for materials that the .mtl text
+// describes, base colour, opacity, emission, roughness and metalness in the terms of glTF, and
+// the images for these and for normals. folder: that of the mesh; images elsewhere are not
+// read. textures: false leaves images out. max_bytes: limit of all images.
 MaterialAsset make_material_asset(const SourceMaterials& materials, const std::string& folder,
                                   bool textures, std::uint64_t max_bytes);
 

@@ -19,10 +19,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Memory for an .mtl file, by its bytes: the text, and lists of the images that it names.
+// Memory per byte of an .mtl file: the text, and lists of the images that it names.
 constexpr std::uint64_t kOfMtl = 40;
 
-// Never empty, so that no file in it is "-", which is standard input.
+// Returns the folder, never empty, so that no file in it is "-", which is standard input.
 std::string folder_of(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   return folder.empty() ? "." : folder.string();
@@ -39,7 +39,7 @@ std::set<std::string, std::less<>> kept_textures(std::string_view mtl) {
   return kept;
 }
 
-// Lines as in "mtllib a.mtl b.mtl", or of one name with blanks.
+// Returns the names in lines such as "mtllib a.mtl b.mtl", or with one name with blanks.
 std::vector<std::string> library_names(const std::string& lines, const fs::path& folder) {
   std::vector<std::string> names;
   for (TextWords text(lines); !text.at_end(); text.next_line()) {
@@ -57,7 +57,7 @@ std::vector<std::string> library_names(const std::string& lines, const fs::path&
   return names;
 }
 
-// Images of other uses than the asset has.
+// Adds notes about images that the asset has no use for.
 void note_what_is_dropped(SingleMesh& mesh) {
   constexpr std::size_t kMaxNamed = 100;
   std::string dropped;
@@ -74,7 +74,7 @@ void note_what_is_dropped(SingleMesh& mesh) {
                        "); only those of map_Kd, map_Ke and norm are kept");
 }
 
-// A name alone tells nothing apart, and is not worth an asset.
+// Adds a note about a single name, which distinguishes nothing and is not worth an asset.
 void note_only_names(SingleMesh& mesh) {
   if (!mesh.asset.empty()) return;
   std::string names;
@@ -129,7 +129,7 @@ void read_material_text(const std::string& path, std::uint64_t max_memory_bytes,
     const std::string file = (folder / name).string();
     const std::uint64_t held = mesh.memory_bytes() + kOfMtl * mesh.materials.mtl.size();
     const std::uint64_t left = max_memory_bytes - std::min(held, max_memory_bytes);
-    // Only a part of the memory is for the text: messages name the limit of all.
+    // Only part of the memory is for the text, but messages name the whole limit.
     std::error_code unknown;
     if (const auto size = fs::file_size(file, unknown); !unknown && size > left / kOfMtl) {
       note_unread("materials: " + file + ": " + memory_problem(max_memory_bytes));
@@ -167,7 +167,7 @@ std::vector<std::string> textures_of(std::string_view mtl) {
   return textures;
 }
 
-// Whether a name leads to a place in or below the folder, also where it is a link.
+// Whether a name leads to a place in or below the folder, even if it is a link.
 bool stays_below(const fs::path& folder, const fs::path& name) {
   if (!name.is_relative() || std::find(name.begin(), name.end(), "..") != name.end()) {
     return false;

@@ -1,4 +1,4 @@
-// The .mtl files beside OBJ files.
+// Reads the .mtl files that OBJ files name.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 namespace rlpc {
 
 // Reads a mesh, and the .mtl files and images that it names if they are in its folder or below
-// it, into its asset. textures: false leaves images out. Notes: files that cannot be read; what
-// is known of materials but not part of the stream.
+// it, into its asset. textures: false leaves images out. Notes: files that cannot be read;
+// properties of materials that the stream does not hold.
 InputResult<SingleMesh> read_mesh_and_materials(const std::string& path, bool textures,
                                                 std::uint64_t max_memory_bytes);
 
@@ -22,10 +22,10 @@ InputResult<SingleMesh> read_mesh_and_materials(const std::string& path, bool te
 void read_material_text(const std::string& path, std::uint64_t max_memory_bytes,
                         SingleMesh& mesh);
 
-// Whether a name leads to a place in or below the folder, also where it is a link.
+// Whether a name leads to a place in or below the folder, even if it is a link.
 bool stays_below(const std::filesystem::path& folder, const std::filesystem::path& name);
 
-// Image files that an .mtl file names, each once, in order.
+// Returns the image files that an .mtl file names, each once, in order.
 std::vector<std::string> textures_of(std::string_view mtl);
 
 }  // namespace rlpc

@@ -7,7 +7,7 @@
 namespace rlpc {
 namespace {
 
-// Words behind an option; none: it is none.
+// Returns the number of words after an option; none: it is no option.
 std::optional<std::size_t> count_of_option(std::string_view word) {
   for (const char* const one : {"-blendu", "-blendv", "-bm", "-boost", "-cc", "-clamp",
                                 "-imfchan", "-texres", "-type"}) {
@@ -33,7 +33,7 @@ MtlMap read_mtl_map(TextWords& words) {
       continue;
     }
     if (option != "-s" && option != "-o" && option != "-t") break;
-    // One to three numbers; the name comes last.
+    // Take one to three numbers; the name comes last.
     ++at;
     for (std::size_t c = 0; c < 3 && at + 1 < all.size(); ++c, ++at) {
       const auto value = parse_number(all[at]);

@@ -1,4 +1,4 @@
-// The images that .mtl files name.
+// References to images in .mtl files.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 
 namespace rlpc {
 
-// "-s 2 2 1 -o 0.1 0 skin tone.png": what follows map_Kd and others.
+// Argument of map_Kd and others: "-s 2 2 1 -o 0.1 0 skin tone.png".
 struct MtlMap {
-  std::string name{};                      // may have blanks; empty: there is none
+  std::string name{};                      // may have blanks; empty: no image
   std::array<double, 2> scale{1.0, 1.0};   // -s: of texture coordinates, before the offset
   std::array<double, 2> offset{0.0, 0.0};  // -o
 };

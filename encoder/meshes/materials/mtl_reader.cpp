@@ -12,8 +12,8 @@
 namespace rlpc {
 namespace {
 
-// Keywords whose parameters have no place in a stream, and the values that mean as much as no
-// such line.
+// Keywords whose parameters a stream cannot hold, and the values that mean the same as no such
+// line.
 struct Unkept {
   std::string_view keyword;
   std::optional<double> neutral;
@@ -69,17 +69,17 @@ class MtlReader {
  private:
   struct Material {
     Mtl mtl;
-    std::optional<double> shine_roughness;  // of Ns
+    std::optional<double> shine_roughness;  // from Ns
   };
 
-  // Keywords of lines are those of the file: only so many are held.
+  // Notes a dropped keyword. Keywords come from the file, so only so many are held.
   void drop(std::string_view keyword) {
     constexpr std::size_t kMaxNames = 100;
     const std::string name(keyword.substr(0, 40));
     if (known_.size() < kMaxNames && known_.insert(name).second) dropped_.push_back(name);
   }
 
-  // A number from 0 to 1.
+  // Reads a number from 0 to 1.
   std::optional<double> factor_of(std::string_view keyword, TextWords& words) {
     const std::string_view word = words.next();
     const auto value = parse_number(word);
@@ -92,7 +92,7 @@ class MtlReader {
     return within;
   }
 
-  // "Kd 0.8": the same for all three.
+  // Reads a colour; "Kd 0.8" means the same for all three.
   std::optional<MtlColour> colour_of(std::string_view keyword, TextWords& words) {
     const auto red = factor_of(keyword, words);
     if (!red) return std::nullopt;
@@ -116,7 +116,7 @@ class MtlReader {
     } else if (keyword == "Pm") {
       mtl.metalness = factor_of(keyword, words);
     } else if (keyword == "Ns") {
-      // That of a Blinn-Phong highlight that is as wide.
+      // Take the roughness of an equally wide Blinn-Phong highlight.
       const auto exponent = parse_number(words.next());
       if (exponent) {
         material.shine_roughness = std::sqrt(2.0 / (std::max(*exponent, 0.0) + 2.0));

@@ -1,4 +1,4 @@
-// What .mtl files say of materials.
+// Reads materials from .mtl files.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace rlpc {
 
 using MtlColour = std::array<double, 3>;
 
-// What is kept of a material. Factors are 0 to 1.
+// The properties of a material that are kept. Factors are 0 to 1.
 struct Mtl {
   std::optional<MtlColour> base;  // Kd, taken as linear
   std::optional<MtlColour> emission;
@@ -28,13 +28,13 @@ struct Mtl {
 };
 
 struct MtlFile {
-  std::map<std::string, Mtl, std::less<>> materials;  // those that are used, by name
+  std::map<std::string, Mtl, std::less<>> materials;  // only used ones, [name]
   // A line for the user that names the keywords whose values are not kept, and the materials
-  // that no face uses; empty: there are none.
+  // that no face uses; empty: none.
   std::string dropped;
 };
 
-// Reads the materials that faces use. Cost: linear in the text, but for n * log n of names.
+// Reads the materials that faces use, in time linear in the text and n * log n in the names.
 MtlFile read_mtl(const SourceMaterials& materials);
 
 }  // namespace rlpc

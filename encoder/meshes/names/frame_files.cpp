@@ -27,7 +27,7 @@ FrameFiles in_order(const std::vector<std::string>& paths,
 FrameFiles with_notes(const std::vector<std::string>& paths, const Reading& reading) {
   FrameFiles files = in_order(paths, reading.order);
   const FrameSteps steps = steps_of(reading);
-  constexpr double kStep = 1.1;  // from one frame to the next, or less
+  constexpr double kStep = 1.1;  // largest step from one frame to the next
   std::vector<std::size_t> gaps = steps.gaps;
   if (steps.regularity == Regularity::kEqualSteps) {
     if (steps.step <= kStep || reading.has_fractions) return files;

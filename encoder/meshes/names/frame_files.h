@@ -1,4 +1,4 @@
-// The files of frames, in their order.
+// Files of frames, in frame order.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct FrameFiles {
   std::vector<std::string> notes{};
 };
 
-// Files by index.
+// Returns the files in the order of `order`.
 FrameFiles in_order(const std::vector<std::string>& paths,
                     const std::vector<std::size_t>& order);
 

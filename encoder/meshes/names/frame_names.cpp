@@ -15,7 +15,8 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// The run of digits that starts at `pos`, without its leading zeros; moves `pos` past it.
+// Returns the run of digits that starts at `pos`, without its leading zeros; moves `pos` past
+// it.
 std::string_view take_number(std::string_view text, std::size_t& pos) {
   while (pos < text.size() && text[pos] == '0') ++pos;
   const std::size_t first = pos;
@@ -23,7 +24,7 @@ std::string_view take_number(std::string_view text, std::size_t& pos) {
   return text.substr(first, pos - first);
 }
 
-// Names that differ in nothing but one date and time.
+// Sorts names that differ only in one date and time.
 std::optional<FrameFiles> sort_dates(const std::vector<std::string>& paths) {
   std::vector<DatedName> dates;
   for (const std::string& path : paths) {
@@ -57,7 +58,7 @@ bool natural_less(std::string_view a, std::string_view b) {
       if (m.size() != n.size()) return m.size() < n.size();
       if (m != n) return m < n;
     } else {
-      // As bytes: char is signed on some machines.
+      // Compare bytes, as char is signed on some machines.
       if (a[i] != b[j])
         return static_cast<std::uint8_t>(a[i]) < static_cast<std::uint8_t>(b[j]);
       ++i;
@@ -70,7 +71,7 @@ bool natural_less(std::string_view a, std::string_view b) {
 
 InputResult<FrameFiles> sort_frames(std::vector<std::string> paths, const std::string& where) {
   if (paths.size() == 1) return FrameFiles{std::move(paths)};
-  // The same order of the input, whatever lists it.
+  // Sort the input, so that its order does not depend on what lists it.
   std::sort(paths.begin(), paths.end(), natural_less);
   const NameOrder order = find_order(paths);
   const NameProblem problem(paths, where);

@@ -21,7 +21,7 @@ std::uint32_t below(Random& random, std::size_t count) {
   return static_cast<std::uint32_t>(random() % count);
 }
 
-// The names in the order of the frames, or the error.
+// Returns the names in the order of the frames, or the error.
 Names sorted(Names names) {
   const auto files = sort_frames(std::move(names), "FOLDER");
   return files ? files->paths : Names{files.error().message};
@@ -50,7 +50,7 @@ TEST(FrameNames, CompareRunsOfDigitsByValue) {
   EXPECT_TRUE(natural_less("f01", "f1"));
   EXPECT_FALSE(natural_less("f1", "f01"));
   EXPECT_FALSE(natural_less("f1", "f1"));
-  EXPECT_FALSE(natural_less("\xC3\xA9_1", "z_1"));  // by bytes, whatever the sign of char
+  EXPECT_FALSE(natural_less("\xC3\xA9_1", "z_1"));  // compares bytes, whatever the sign of char
   EXPECT_TRUE(natural_less("f99999999999999999999998", "f99999999999999999999999"));
 }
 
@@ -163,7 +163,7 @@ TEST(FrameNames, AreSelectedByPatternsWithSigns) {
     EXPECT_TRUE(files->notes.empty()) << files->notes[0];
   }
   const Names padded{"f_-001.obj", "f_+000.obj", "f_+001.obj"};
-  EXPECT_EQ(select_frames("f_%04d.obj", padded)->paths, padded);  // as "%+04d" in C
+  EXPECT_EQ(select_frames("f_%04d.obj", padded)->paths, padded);  // like "%+04d" in C
   EXPECT_EQ(select_frames("f_###.obj", padded)->paths, padded);
 }
 
@@ -181,7 +181,7 @@ TEST(FrameNames, ThatPatternsLeaveOutAreTold) {
   EXPECT_EQ(note("f_%04d.obj", {"f_0001.obj", "f_0002.obj", "g_3.obj", "f_1b.obj"}), "");
 }
 
-// A pattern for whole numbers takes what "%g" takes, or tells of the rest.
+// A pattern for whole numbers selects what "%g" selects, or reports the rest.
 TEST(FrameNames, ThatPatternsLeaveOutAreToldInRandomSchemes) {
   Random random(14);
   int told = 0;
@@ -215,7 +215,7 @@ TEST(FrameNames, AreExplainedWherePatternsAreWrong) {
   EXPECT_NE(message("f_%x.obj").find("walk_%04d.obj"), std::string::npos);
 }
 
-// A way to name frames, with numbers of other things before and after that of the frame.
+// A way to name frames, with other numbers before and after the frame number.
 class Scheme {
  public:
   explicit Scheme(Random& random) {
@@ -263,7 +263,7 @@ class Scheme {
     if (size % parts != 0) {
       char part[16];
       std::snprintf(part, sizeof part, "%g", static_cast<double>(size % parts) / parts);
-      text += part + 1;  // without the zero before the point
+      text += part + 1;  // skips the zero before the point
     }
     return text + after_;
   }
@@ -284,7 +284,7 @@ TEST(FrameNames, AreInOrderInRandomSchemes) {
   }
 }
 
-// A name that is none of the scheme's: changed or lengthened anywhere but in its digits.
+// Names that do not fit the scheme are changed or lengthened anywhere but in their digits.
 TEST(FrameNames, AreNeverThoseOfRandomStrangers) {
   Random random(12);
   for (int i = 0; i < 3000; ++i) {

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What a pattern with %g stands for.
+// Returns the form that a pattern with %g describes.
 std::optional<NameForm> form_of_any_number(std::string_view pattern) {
   const std::size_t place = pattern.find("%g");
   if (place == pattern.npos || pattern.find('%', place + 1) != pattern.npos) {
@@ -33,8 +33,8 @@ struct NumberedFile {
   std::string name;
 };
 
-// The whole number of a name that a pattern with %d selects. The width may include the sign, as
-// in C, or not.
+// Returns the whole number of a name that a pattern with %d selects. The width may include the
+// sign, as in C, or not.
 std::optional<std::int64_t> number_of(const NumberedName& pattern, const std::string& name) {
   const auto number = NameForm{pattern.prefix, pattern.suffix}.number_of(name);
   if (!number || !number->fraction.empty()) return std::nullopt;
@@ -51,7 +51,7 @@ std::optional<std::int64_t> number_of(const NumberedName& pattern, const std::st
   return number->sign == '-' ? -value : value;
 }
 
-// The name of a frame that is missing, with signs as another has them.
+// Returns the name of a missing frame, with the kind of signs of another.
 std::string name_with(const NumberedName& pattern, std::int64_t number,
                       const std::string& other) {
   if (number >= 0) return pattern.with(static_cast<std::uint64_t>(number));
@@ -62,8 +62,8 @@ std::string name_with(const NumberedName& pattern, std::int64_t number,
   return pattern.prefix + "-" + digits + pattern.suffix;
 }
 
-// The files that are not among `selected` but have some number where the pattern has its own,
-// with a hyphen before it as its sign.
+// Returns the files that are not among `selected` but have some number in place of the
+// pattern's, with a hyphen before it as its sign.
 std::vector<std::string> left_out(NameForm form, const std::vector<std::string>& selected,
                                   const std::vector<std::string>& names) {
   const std::size_t sign = sign_length_before(form.before, form.before.size());
@@ -77,7 +77,7 @@ std::vector<std::string> left_out(NameForm form, const std::vector<std::string>&
   return others;
 }
 
-// The pattern for those as well.
+// Returns the pattern that also selects those.
 std::string wider_pattern(const fs::path& pattern, const NameForm& form) {
   const std::size_t sign = sign_length_before(form.before, form.before.size());
   const std::string_view before = form.before.substr(0, form.before.size() - sign);
@@ -117,7 +117,7 @@ InputResult<FrameFiles> select_any_number(const fs::path& pattern, const NameFor
   return files;
 }
 
-// Files by number, which must have no gaps.
+// Returns files by number; there must be no gaps.
 InputResult<FrameFiles> without_gaps(const fs::path& pattern, const NumberedName& numbered,
                                      const std::vector<NumberedFile>& found) {
   FrameFiles files;

@@ -9,12 +9,12 @@
 
 namespace rlpc {
 
-// The files among `names`, those in the folder of a pattern, that it selects, with their
-// extension in upper or lower case. "%d" stands for whole numbers without padding, "%04d" or
-// "####" for those padded to four characters (any width), with or without sign, without gaps;
-// "%g" stands for every number, with or without sign, fraction and padding. A note tells of
-// files that are left out though they have another number in the place of the pattern's.
-// Errors: no such pattern; no file; a gap; two files of one frame.
+// Returns the files among `names`, those in the folder of a pattern, that the pattern selects;
+// their extension may be in upper or lower case. "%d" stands for whole numbers without padding,
+// "%04d" or "####" for those padded to four characters (any width), with or without sign,
+// without gaps; "%g" stands for every number, with or without sign, fraction and padding. A
+// note lists files that are left out although they have another number in place of the
+// pattern's. Errors: no such pattern; no file; a gap; two files of one frame.
 InputResult<FrameFiles> select_frames(const std::string& pattern,
                                       const std::vector<std::string>& names);
 

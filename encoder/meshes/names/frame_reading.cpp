@@ -17,8 +17,8 @@ bool follows_word(std::string_view text, std::size_t end) {
   return end > 0 && is_part_of_word(text[end - 1]);
 }
 
-// Frames of one take, as in take-2.0001, which no times are: they count in small steps, with
-// four digits or more, or with three from 0 or 1 on.
+// Whether numbers are frames of one take, as in take-2.0001, not times: they count in small
+// steps, with four digits or more, or with three from 0 or 1 on.
 bool are_frames_of_take(const Reading& reading) {
   const NameNumber& first = reading.numbers[reading.order.front()];
   const NameNumber& last = reading.numbers[reading.order.back()];
@@ -47,14 +47,14 @@ bool has_zero(const Reading& reading) {
                      [](const NameNumber& n) { return n.value() == 0.0; });
 }
 
-// The signs of numbers that all have the same one, a hyphen after a word.
+// Judges the signs of numbers that all have the same one, a hyphen after a word.
 Signs hyphens_of(const Reading& reading) {
   if (follows_mantissa(reading.form.before)) return Signs::kDoubtful;
   if (!reading.has_fractions || are_frames_of_take(reading)) return Signs::kNone;
   return has_zero(reading) ? Signs::kUnlikely : Signs::kDoubtful;
 }
 
-// Fractions of one length, or without zeros at their ends, except that of 1.0.
+// Whether fractions have one length, or no zeros at their ends, except that of 1.0.
 bool are_fractions_alike(const std::vector<NameNumber>& numbers) {
   std::size_t length = 0;
   bool is_fixed = true;
@@ -79,9 +79,9 @@ void sort_by_number(Reading& reading) {
   }
 }
 
-// Whether the number before the point has a sign, so that what follows it is no counter.
+// Whether the number before the point has a sign, so that no counter follows it.
 bool follows_negative_number(std::string_view before) {
-  std::size_t at = before.size() - 1;  // of the point
+  std::size_t at = before.size() - 1;  // place of the point
   while (at > 0 && is_digit(before[at - 1])) --at;
   const std::size_t sign = sign_length_before(before, at);
   return sign > 0 && !follows_word(before, at - sign);

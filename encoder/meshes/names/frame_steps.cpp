@@ -9,17 +9,17 @@ namespace rlpc {
 
 namespace {
 
-// The position of the first digit that is not 0; of 0, before all others.
+// Returns the position of the first digit that is not 0; for 0, before all others.
 int exponent_of(double value) {
   if (value == 0.0) return std::numeric_limits<int>::min();
   return static_cast<int>(std::floor(std::log10(std::abs(value))));
 }
 
-// Half a unit of the last decimal to which each value is known, ascending as the values. Zeros
-// at the end may be left out, and six significant digits leave fewer decimals to greater
+// Returns half a unit of the last known decimal of each value, in the order of the values.
+// Zeros at the end may be left out, and six significant digits leave fewer decimals to greater
 // values: a value is known to the decimals of any that are as great or greater.
 std::vector<double> rounding_of(const Reading& reading, const std::vector<double>& values) {
-  std::map<int, std::size_t> decimals;  // by position of the first digit
+  std::map<int, std::size_t> decimals;  // [position of the first digit]
   for (std::size_t i = 0; i < values.size(); ++i) {
     std::size_t& max = decimals[exponent_of(values[i])];
     max = std::max(max, reading.numbers[reading.order[i]].fraction.size());
@@ -38,17 +38,17 @@ std::vector<double> rounding_of(const Reading& reading, const std::vector<double
   return rounding;
 }
 
-// What computing with doubles may add to an error.
+// Returns the error that computing with doubles may add.
 double slack_of(const std::vector<double>& values, double step) {
   const double greatest = std::max(std::abs(values.front()), std::abs(values.back()));
   return 1e-9 * step + 4.0 * std::numeric_limits<double>::epsilon() * greatest;
 }
 
-// How much is left, at its narrowest, between the bounds of values, by their rounding, and a
-// line of this step; negative: the line leaves them.
+// Returns the narrowest room between the bounds of values, given by their rounding, and a line
+// of this step; negative: the line leaves them.
 double room_for(double step, const std::vector<double>& values,
                 const std::vector<double>& rounding) {
-  // Less than half a unit: a line through the ends of all roundings is none.
+  // Less than half a unit, so that no line goes through the ends of all roundings.
   constexpr double kWithin = 0.99;
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -82,7 +82,7 @@ bool are_on_a_line(const std::vector<double>& values, const std::vector<double>&
   return false;
 }
 
-// Differences beyond the smallest one.
+// Returns the gaps: differences beyond the smallest one.
 std::vector<std::size_t> gaps_of(const std::vector<double>& values, double step) {
   std::vector<std::size_t> gaps;
   for (std::size_t i = 1; i < values.size(); ++i) {
@@ -104,15 +104,15 @@ bool are_multiples(const std::vector<double>& values, const std::vector<double>&
   return true;
 }
 
-// Whether no more multiples of the smallest step are missing than half of those there.
+// Whether the missing multiples of the smallest step are at most half of those present.
 bool are_dense(const std::vector<double>& values, double step) {
   const double places = (values.back() - values.front()) / step + 1.0;
   const auto count = static_cast<double>(values.size());
   return 2.0 * (places - count) <= count + 1e-6;
 }
 
-// Frames that are missing leave few differences greater than a step of one unit of the last
-// decimal; rounding leaves many.
+// Whether gaps are missing frames: these leave few differences greater than a step of one unit
+// of the last decimal; rounding leaves many.
 bool are_gaps_real(const std::vector<std::size_t>& gaps, const std::vector<double>& values,
                    const std::vector<double>& rounding, double step) {
   const double unit = 2.0 * *std::min_element(rounding.begin(), rounding.end());

@@ -32,7 +32,7 @@ std::string_view without_zeros_at_end(std::string_view digits) {
   return digits;
 }
 
-// Whether two suffixes are the same but for the case of their extension.
+// Whether two suffixes are the same except for the case of their extension.
 bool same_suffix(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   const std::size_t point = std::min(a.rfind('.'), a.size());
@@ -47,7 +47,7 @@ class DateScanner {
  public:
   DateScanner(std::string_view text, std::size_t at) : text_(text), at_(at) {}
 
-  // Takes `count` digits of a value in this range; false: there is something else.
+  // Takes `count` digits of a value in this range. Returns false if there is something else.
   bool take(std::size_t count, int min, int max) {
     if (end_of_digits(text_, at_) < at_ + count) return false;
     int value = 0;
@@ -119,7 +119,7 @@ double NameNumber::value() const {
   const std::string text = std::string(whole) + "." + std::string(fraction) + "0";
   double size = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), size);
-  if (error != std::errc()) size = std::numeric_limits<double>::max();  // of 309 digits or more
+  if (error != std::errc()) size = std::numeric_limits<double>::max();  // 309 digits or more
   return sign == '-' ? -size : size;
 }
 

@@ -12,7 +12,7 @@ namespace rlpc {
 
 namespace {
 
-// The fractions of names with the same whole part, as counters.
+// [whole part]: the fractions of names with it, as counters.
 using Counters = std::map<std::string_view, std::vector<double>>;
 
 Counters counters_of(const Reading& reading) {
@@ -34,8 +34,8 @@ bool are_fractions_fixed(const std::vector<NameNumber>& numbers) {
                      [&](const NameNumber& n) { return n.fraction.size() == length; });
 }
 
-// Whether the names may be the frames of several takes or versions, as in take1.0001: what
-// follows the point counts, with few gaps, in each.
+// Whether the names may be the frames of several takes or versions, as in take1.0001: in each,
+// the number after the point counts with few gaps.
 bool may_be_takes(const Reading& reading) {
   std::vector<double> differences;
   for (const auto& [whole, values] : counters_of(reading)) {
@@ -50,8 +50,8 @@ bool may_be_takes(const Reading& reading) {
          (step == 1.0 || are_fractions_fixed(reading.numbers));
 }
 
-// Whether one name may be a rest pose, as take1 before take1.0001: it alone has no fraction,
-// and those of the others have zeros before them. Times that begin at 0 are none.
+// Whether one name may be a rest pose, as take1 before take1.0001: only it has no fraction, and
+// the fractions of the others have zeros before them. Times that begin at 0 have none.
 bool may_have_rest_pose(const Reading& reading) {
   const std::string_view whole = reading.numbers.front().significant();
   std::size_t length = 0;
@@ -68,7 +68,7 @@ bool may_have_rest_pose(const Reading& reading) {
   return without == 1;
 }
 
-// Whether each frame with parts after it is there itself, the first perhaps not.
+// Whether each frame that has parts is present itself, except perhaps the first.
 bool has_whole_frames(const FrameSteps& steps) {
   const double first = std::floor(steps.values.front());
   return std::all_of(steps.values.begin(), steps.values.end(), [&](double value) {
@@ -109,7 +109,7 @@ std::vector<Reading> only_written(const std::vector<Reading>& readings) {
   return left;
 }
 
-// One of readings with the same order, at least one: the most regular, for notes about gaps.
+// Returns the most regular of at least one reading with the same order, for notes about gaps.
 const Reading& simplest(const std::vector<Reading>& readings) {
   const auto regularity = [](const Reading& reading) {
     const FrameSteps steps = steps_of(reading);
@@ -121,8 +121,8 @@ const Reading& simplest(const std::vector<Reading>& readings) {
       [&](const Reading& a, const Reading& b) { return regularity(a) < regularity(b); });
 }
 
-// The readings that have equal steps; with two names, all have. Rounded fractions must compete
-// with no counter that has few gaps: 0.11, 0.2, 0.3 may be rounded, or 2, 3, 11.
+// Returns the readings that have equal steps; with two names, all have. Rounded fractions must
+// compete with no counter that has few gaps: 0.11, 0.2, 0.3 may be rounded, or 2, 3, 11.
 std::vector<Reading> only_regular(const std::vector<Reading>& readings) {
   std::vector<Reading> left;
   bool has_counter = false;
@@ -137,7 +137,7 @@ std::vector<Reading> only_regular(const std::vector<Reading>& readings) {
   return has_counter && is_rounded ? std::vector<Reading>{} : left;
 }
 
-// The counter after a version, if it has few gaps and the fractions are irregular.
+// Returns the counter after a version, if it has few gaps and the fractions are irregular.
 std::vector<Reading> only_counted_version(const std::vector<Reading>& readings) {
   bool has_version = false;
   std::vector<Reading> left;
@@ -153,7 +153,7 @@ std::vector<Reading> only_counted_version(const std::vector<Reading>& readings) 
   return has_version ? left : std::vector<Reading>{};
 }
 
-// One reading for each order.
+// Returns one reading for each order.
 std::vector<Reading> rivals_of(const std::vector<Reading>& readings) {
   std::vector<Reading> rivals;
   for (const Reading& reading : readings) {
@@ -165,7 +165,7 @@ std::vector<Reading> rivals_of(const std::vector<Reading>& readings) {
   return rivals;
 }
 
-// Whole numbers as fractions, if they are likely enough: t_0_25, t_0_5, t_0_75 count in no
+// Reads whole numbers as fractions, if that is likely enough: t_0_25, t_0_5, t_0_75 count in no
 // steps, and the zeros of t_0_041667 and t_0_125 pad to no width.
 std::optional<Reading> likely_fractions(const Reading& counted) {
   auto fractions = read_as_fractions(counted);

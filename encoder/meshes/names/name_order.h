@@ -1,4 +1,4 @@
-// Decides which of the ways to read the numbers of names gives the order of the frames.
+// Decides which way to read the numbers of names yields the order of the frames.
 #pragma once
 
 #include <optional>
@@ -12,16 +12,16 @@ namespace rlpc {
 // At most one of the first three is set; none: the names do not differ in one number.
 struct NameOrder {
   std::optional<Reading> chosen{};
-  std::vector<Reading> rivals{};       // with different orders, that can all be meant
-  std::optional<Reading> doubtful{};   // has all names, of several sequences perhaps
+  std::vector<Reading> rivals{};       // have different orders and can all be meant
+  std::optional<Reading> doubtful{};   // has all names, perhaps of several sequences
   std::optional<Reading> twice{};      // gives several names one number
-  std::optional<Reading> pointless{};  // what is chosen as fractions, without a point
-  std::optional<Reading> unlikely{};   // takes hyphens for signs that the chosen one does not
+  std::optional<Reading> pointless{};  // the chosen one as fractions without a point
+  std::optional<Reading> unlikely{};   // takes hyphens for signs, unlike the chosen one
 };
 
-// The readings are: numbers with fractions, a counter after a point, and each with hyphens as
-// signs or separators. Where they differ in the order, the one is chosen that alone can be
-// written so, or alone has equal steps. It refers to the texts of the names.
+// Compares these readings: numbers with fractions, a counter after a point, and each with
+// hyphens as signs or separators. If their orders differ, chooses the only one that a program
+// can have written, or that has equal steps. The result refers to the texts of the names.
 NameOrder find_order(const std::vector<std::string>& names);
 
 }  // namespace rlpc

@@ -1,4 +1,4 @@
-// Names with times, versions and counters: each scheme is read in its order, or refused.
+// Tests names with times, versions and counters: each scheme is read in its order, or refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ void expect_order(const Names& names) {
   }
 }
 
-// The patterns of an error about several orders; empty: it is another error.
+// Returns the patterns of an error about several orders; empty: it is another error.
 Names patterns_in(const std::string& message) {
   static const std::string kFirst = "choose with a pattern: ";
   static const std::string kNext = ", or ";
@@ -67,7 +67,7 @@ Names selected(const std::string& pattern, const Names& names) {
   return files ? files->paths : Names{files.error().message};
 }
 
-// Names that are refused, with a pattern for either order.
+// Expects that names are refused, with a pattern for either order.
 void expect_two_orders(const Names& names, const Names& others) {
   const std::string message = message_of(names);
   const Names patterns = patterns_in(message);
@@ -158,7 +158,7 @@ TEST(NameOrder, IsNotThatOfTakesAndRestPoses) {
   }
 }
 
-// What a program may print for a number.
+// Prints numbers as various programs do.
 class Printer {
  public:
   explicit Printer(Random& random)
@@ -199,8 +199,8 @@ class Printer {
   const char* format_;
 };
 
-// A sequence whose names have the times of its frames; empty: they are not all different, or
-// have exponents.
+// Returns a sequence whose names have the times of its frames; empty: they are not all
+// different, or have exponents.
 Names random_times(Random& random) {
   const Printer printer(random);
   const std::string before = any<std::string>(
@@ -226,7 +226,7 @@ Names random_times(Random& random) {
       break;
   }
   const std::size_t count = 3 + below(random, 38);
-  const bool is_added_up = below(random, 4) == 0;  // as in t += 1 / rate
+  const bool is_added_up = below(random, 4) == 0;  // t += 1 / rate
   Names names;
   std::set<double> values;
   double time = first;
@@ -240,7 +240,7 @@ Names random_times(Random& random) {
   return values.size() == count ? names : Names{};
 }
 
-// The frames of a version or take, some perhaps missing.
+// Returns the frames of a version or take, some perhaps missing.
 Names random_counters(Random& random) {
   const std::string before =
       any<std::string>(random, {"v2.", "sh010_v003.", "take1.", "shot_12.", "f.1001.",
@@ -271,7 +271,7 @@ void expect_right_or_refused(Names (*random_names)(Random&), std::uint32_t seed)
     ++tried;
     const Names given = shuffled(names, random);
     const auto files = sort_frames(given, "FOLDER");
-    // Times up to -0.0 may be the other way round, which is told.
+    // Times up to -0.0 may be in the opposite order, which a note reports.
     const bool is_told = files && !files->notes.empty() &&
                          files->notes.back().find("read as separators") != std::string::npos;
     if (is_told && files->paths != names) {

@@ -77,7 +77,7 @@ std::string NameProblem::shown(std::size_t name) const {
   return fs::path(names_[name]).filename().string();
 }
 
-// The first names of an order.
+// Returns the first names of an order.
 std::string NameProblem::beginning(const std::vector<std::size_t>& order) const {
   constexpr std::size_t kCount = 4;
   std::string text;
@@ -87,7 +87,7 @@ std::string NameProblem::beginning(const std::vector<std::size_t>& order) const 
   return text + (order.size() > kCount ? " ..." : "");
 }
 
-// The names that are not `left_out`, which ascends; the first of them.
+// Lists the first of the names that are not in `left_out`, which ascends.
 std::string NameProblem::list(const std::vector<std::size_t>& left_out) const {
   constexpr std::size_t kMaxListed = 5;
   std::string text;
@@ -100,8 +100,8 @@ std::string NameProblem::list(const std::vector<std::size_t>& left_out) const {
          (count > kMaxListed ? " and " + std::to_string(count - kMaxListed) + " more" : "");
 }
 
-// A pattern that selects these names, which have the form. Those for whole numbers allow no
-// gaps.
+// Returns a pattern that selects these names, which have the form. Patterns for whole numbers
+// allow no gaps.
 std::string NameProblem::pattern(const NameForm& form,
                                  const std::vector<std::size_t>& members) const {
   const std::size_t width = form.number_of(names_[members[0]])->whole.size();
@@ -123,9 +123,9 @@ std::string NameProblem::pattern(const NameForm& form,
   return with(form, is_plain ? "%d" : is_padded ? "%0" + std::to_string(width) + "d" : "%g");
 }
 
-// The form that most names have with a whole number, and these names, ascending.
+// Returns the form that most names have with a whole number, and these names, ascending.
 std::pair<NameForm, std::vector<std::size_t>> NameProblem::largest_group() const {
-  constexpr std::size_t kEnough = 1000;  // names: the others change little
+  constexpr std::size_t kEnough = 1000;  // number of names; the others change little
   std::map<std::pair<std::string_view, std::string_view>, std::vector<std::size_t>> groups;
   std::pair<NameForm, std::vector<std::size_t>> best;
   for (std::size_t i = 0; i < names_.size() && i < kEnough; ++i) {

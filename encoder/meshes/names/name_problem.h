@@ -1,4 +1,4 @@
-// Errors about the names of files, with the patterns that choose.
+// Errors about the names of files, with patterns that resolve them.
 #pragma once
 
 #include <string>
@@ -10,20 +10,21 @@
 
 namespace rlpc {
 
-// What is wrong with names, and which of them fit which form.
+// Describes what is wrong with names, and which of them fit which form.
 class NameProblem {
  public:
-  // names, where: referred to; where is the folder or pattern.
+  // Keeps references to both. where: the folder or pattern.
   NameProblem(const std::vector<std::string>& names, const std::string& where)
       : names_(names), where_(where) {}
 
-  // A reading gives two names one number.
+  // The error that a reading gives two names one number.
   InputError twice(const Reading& reading) const;
-  // Several readings can be meant, with different orders.
+  // The error that several readings can be meant, with different orders.
   InputError ambiguous(const std::vector<Reading>& rivals) const;
-  // Whole numbers may be fractions, with something else in place of the point.
+  // The error that whole numbers may be fractions, with something else in place of the point.
   InputError pointless(const Reading& counted, const Reading& fractions) const;
-  // No number is that of the frame in all names; `doubtful`, if not null, has all.
+  // The error that no number is the frame number in all names; `doubtful`, if not null, has
+  // all.
   InputError different(const Reading* doubtful) const;
 
  private:

@@ -14,14 +14,14 @@ std::uint64_t bytes(const std::vector<T>& all) {
   return std::uint64_t{all.capacity()} * sizeof(T);
 }
 
-// The collector together with the mesh.
+// Collector and mesh together.
 struct Held {
   std::uint64_t all;
   std::uint64_t memory_bytes() const { return all; }
 };
 
-// Appends `value` at `place`, and `usual` at the places before that are not there yet; nothing
-// as long as all are usual.
+// Puts `value` at `place`, and `usual` at the missing places before; nothing as long as all are
+// usual.
 template <class T>
 bool append(std::size_t place, const T& value, const T& usual, const MeshLimit& limit,
             const Held& held, std::vector<T>& list) {
@@ -39,7 +39,7 @@ bool append(std::size_t place, const T& value, const T& usual, const MeshLimit& 
   return true;
 }
 
-// Notes elements that get a value which the file does not give them.
+// Notes elements that get a value that is not in the file.
 void note_gap(std::ptrdiff_t without, std::size_t all, const char* elements,
               const std::string& what, SingleMesh& mesh) {
   if (without == 0) return;
@@ -95,7 +95,7 @@ bool ObjAttributes::add_triangle(std::size_t triangle, const std::array<ObjCorne
 std::uint32_t ObjAttributes::number_of(const std::string& name, Numbers& numbers) {
   const auto next = static_cast<std::uint32_t>(numbers.size());
   const auto [place, is_new] = numbers.try_emplace(name, next);
-  // Of a node of the map, and of the list of names.
+  // Bytes of a node of the map, and of the list of names.
   constexpr std::uint64_t kBytes = 160;
   if (is_new) name_bytes_ += kBytes + 2 * name.size();
   return place->second;
@@ -126,8 +126,8 @@ std::vector<std::uint32_t> ObjAttributes::numbers_of(std::uint32_t Run::*what,
 }
 
 bool ObjAttributes::finish(SingleMesh& mesh, const MeshLimit& limit) {
-  // At most: a normal of each triangle, numbers of materials and parts, lists that grow by
-  // their last values.
+  // Needed at most: a normal of each triangle, numbers of materials and parts, lists that grow
+  // by their last values.
   const std::size_t num_triangles = mesh.triangles.size();
   const bool has_runs = runs_.size() > 1;
   const std::uint64_t more = (has_runs ? 4 * sizeof(std::uint32_t) * num_triangles : 0) +

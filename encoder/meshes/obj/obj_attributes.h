@@ -1,5 +1,5 @@
-// What an OBJ file says of a mesh besides positions: texture coordinates, normals and colours,
-// materials, objects and groups.
+// Data of an OBJ file besides positions: texture coordinates, normals and colours, materials,
+// objects and groups.
 #pragma once
 
 #include <array>
@@ -23,23 +23,23 @@ struct ObjCorner {
 
 class ObjAttributes {
  public:
-  // Of all that was added; memory_bytes() of the mesh comes to it.
+  // Returns the memory of everything that was added, besides memory_bytes() of the mesh.
   std::uint64_t memory_bytes() const;
 
-  // Values of a line; each vector is to be checked for room before.
+  // Return vectors to add the values of a line to; check each for room before.
   std::vector<float>& uv() { return uv_; }            // [value][2]
   std::vector<float>& normals() { return normals_; }  // [value][3]
   std::int64_t num_uv() const { return static_cast<std::int64_t>(uv_.size() / 2); }
   std::int64_t num_normals() const { return static_cast<std::int64_t>(normals_.size() / 3); }
 
-  // The colour of the vertex with this index, vertices without one being white. False: too much
-  // memory.
+  // Adds the colour of the vertex with this index; vertices without one are white. False: too
+  // much memory.
   bool add_colour(std::size_t vertex, const std::array<float, 3>& colour,
                   const MeshLimit& limit, std::uint64_t other_bytes);
-  // The triangle with this index. False: too much memory.
+  // Adds the triangle with this index. False: too much memory.
   bool add_triangle(std::size_t triangle, const std::array<ObjCorner, 3>& corners,
                     const MeshLimit& limit, std::uint64_t other_bytes);
-  // Of the triangles that follow.
+  // Set the material, object and group of the triangles that follow.
   void set_material(const std::string& name) { material_ = number_of(name, materials_); }
   void set_object(std::string name);
   void set_group(std::string name);
@@ -50,7 +50,7 @@ class ObjAttributes {
 
  private:
   using Numbers = std::map<std::string, std::uint32_t>;
-  // From this triangle on.
+  // Material and part of the triangles from first_triangle on.
   struct Run {
     std::size_t first_triangle = 0;
     std::uint32_t material = 0;
@@ -64,15 +64,15 @@ class ObjAttributes {
   std::vector<float> uv_;
   std::vector<float> normals_;
   std::vector<float> colours_;            // [vertex][3]; empty before the first
-  std::vector<std::uint32_t> uv_of_;      // [corner]; empty before the first that has one
-  std::vector<std::uint32_t> normal_of_;  // likewise
+  std::vector<std::uint32_t> uv_of_;      // [corner]; empty before the first uv of a corner
+  std::vector<std::uint32_t> normal_of_;  // [corner]; empty before the first normal of a corner
   Numbers materials_;
   Numbers parts_;
   std::uint64_t name_bytes_ = 0;
   std::string object_;
   std::string group_;
   std::optional<std::uint32_t> material_;
-  std::optional<std::uint32_t> part_;  // none: to be found from object and group
+  std::optional<std::uint32_t> part_;  // none: to be derived from object and group
   std::vector<Run> runs_;
 };
 

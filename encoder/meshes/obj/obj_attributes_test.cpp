@@ -156,7 +156,7 @@ TEST(MaterialFiles, TexturesAreListedOnce) {
             (std::vector<std::string>{"skin.png", "b.png"}));
 }
 
-// Gaps are filled, and told.
+// Gaps are filled and reported.
 TEST(ObjAttributes, TellsWhereValuesAreMissing) {
   const SingleMesh some =
       mesh_of("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0 0 1 0\nvt 0 1\nf 1/1 2/1 3\n");

@@ -19,7 +19,7 @@ namespace rlpc {
 
 namespace {
 
-// What corners of faces refer to by number.
+// A list that corners of faces refer to by number.
 struct Indexed {
   const char* name;
   // The largest index so far of one that has not been read yet, and its line.
@@ -90,7 +90,7 @@ class ObjParser {
     if (kind.highest > count) fail(kind.highest_line, out_of_range(kind, kind.highest, count));
   }
 
-  // Some files have indices into lists that they do not have.
+  // Checks indices; ignores those of lists that the file does not have, as some files do.
   void check_or_ignore(const Indexed& kind, std::int64_t count) {
     if (count > 0) return check_highest(kind, count);
     if (kind.highest == 0) return;
@@ -103,7 +103,7 @@ class ObjParser {
     list.push_back(value);
   }
 
-  // Reads "v x y z" or "v x y z r g b", and notes other rests of the line.
+  // Reads "v x y z" or "v x y z r g b", and notes other contents of the line.
   void read_vertex() {
     if (num_vertices() == std::numeric_limits<std::uint32_t>::max()) {
       return fail(words_.line(), "more than 2^32 - 1 vertices");
@@ -233,8 +233,8 @@ class ObjParser {
             resolved(2, normals_, attributes_.num_normals())};
   }
 
-  // The zero-based index. What it refers to may follow: indices beyond that are checked at the
-  // end of the file.
+  // Returns the zero-based index. Its element may follow: indices beyond the list are checked
+  // at the end of the file.
   std::uint32_t resolve(std::int64_t index, Indexed& kind, std::int64_t count) {
     const std::string name = kind.name;
     if (index == 0) fail(words_.line(), name + " index 0; counting starts at 1");

@@ -10,7 +10,7 @@ namespace {
 
 struct Keyword {
   std::string_view word;
-  std::string_view kind;  // what it is of, in the words of users; empty: nothing of its own
+  std::string_view kind;  // what it describes, in the words of users; empty: nothing by itself
 };
 
 constexpr std::string_view kFreeForm = "free-form curves and surfaces";
@@ -27,7 +27,7 @@ constexpr std::array kKeywords{
     Keyword{"d_interp", kDisplay}, Keyword{"lod", kDisplay}, Keyword{"shadow_obj", kDisplay},
     Keyword{"trace_obj", kDisplay}, Keyword{"ctech", kDisplay}, Keyword{"stech", kDisplay},
     Keyword{"usemap", "texture maps (usemap)"}, Keyword{"maplib", "texture maps (usemap)"},
-    // Those that a reader without attributes passes on.
+    // Keywords that a reader without attributes passes on.
     Keyword{"vt", ""}, Keyword{"vn", ""}, Keyword{"g", ""}, Keyword{"o", ""},
     Keyword{"usemtl", ""}, Keyword{"mtllib", ""}};
 

@@ -137,7 +137,7 @@ class OffParser {
   const std::string& name_;
   const MeshLimit& limit_;
   SingleMesh mesh_;
-  bool extra_of_vertices_ = false;  // after what is read of a line
+  bool extra_of_vertices_ = false;  // numbers after those that are read
   bool extra_of_faces_ = false;
   std::optional<InputError> error_;
 };

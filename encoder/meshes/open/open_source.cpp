@@ -41,7 +41,7 @@ InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options,
         ": is already an RLPC stream; rlpcdec decodes it, rlpcinfo --extract makes "
         "it smaller"};
   }
-  // Perhaps it cannot be read, or only stands for the file. (Not all of a pipe is read.)
+  // The file may be unreadable, or a pointer in its place. (Not all of a pipe is read.)
   const bool is_whole =
       path != "-" || beginning_of(path).starts_with("version https://git-lfs");
   if (format == nullptr && exists && is_whole) {

@@ -18,14 +18,14 @@ InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& 
 
 // Whether the format may contain several animations, and vertices to weld.
 bool has_clips(const InputOptions& options);
-// An error if glTF options (animation, no welding) are set for other input, or if points are
-// given for glTF.
+// Returns an error if glTF options (animation, no welding) are set for other input, or if
+// points are given for glTF.
 std::optional<InputError> check_gltf_options(const InputOptions& options);
 
-// The frames of a .rlpd file (Annex A) or of a PC2 point cache that comes through `file`, which
-// is not owned. Their numbers of frames are not used: frames are read to the end. mesh_path:
-// the triangles of a point cache; empty: the format is .rlpd. Errors: a bad header or mesh; a
-// frame that would not fit max_memory_bytes.
+// Opens the frames of a .rlpd file (Annex A) or of a PC2 point cache that comes through `file`,
+// which is not owned. The number of frames in its header is ignored: frames are read to the
+// end. mesh_path: the triangles of a point cache; empty: the format is .rlpd. Errors: a bad
+// header or mesh; a frame that would not fit max_memory_bytes.
 InputResult<std::unique_ptr<FrameStream>> open_frame_stream(
     std::FILE* file, const std::string& mesh_path, const std::optional<FrameRate>& frame_rate,
     std::uint64_t max_memory_bytes = kUsualEncoderBytes);

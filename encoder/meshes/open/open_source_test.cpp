@@ -27,7 +27,7 @@ void put_f32(std::string& bytes, float value) {
   put_u32(bytes, std::bit_cast<std::uint32_t>(value));
 }
 
-// A PC2 file with these counts in its header, and these values.
+// Returns a PC2 file with these counts in its header, and these values.
 std::string pc2(std::uint32_t points, std::uint32_t samples, const std::vector<float>& values) {
   std::string bytes("POINTCACHE2\0", 12);
   put_u32(bytes, 1);
@@ -43,7 +43,7 @@ void put_be(std::string& bytes, std::uint32_t value) {
   for (int i = 3; i >= 0; --i) bytes += static_cast<char>(value >> (8 * i));
 }
 
-// An MDD file (LightWave) with unused times.
+// Returns an MDD file (LightWave) with unused times.
 std::string mdd(std::uint32_t points, std::uint32_t frames, std::size_t times,
                 const std::vector<float>& values) {
   std::string bytes;
@@ -54,7 +54,7 @@ std::string mdd(std::uint32_t points, std::uint32_t frames, std::size_t times,
   return bytes;
 }
 
-// An .rlpd file (Annex A); three indices make a triangle.
+// Returns an .rlpd file (Annex A); three indices make a triangle.
 std::string rlpd(std::uint32_t vertices, std::uint32_t frames, std::int32_t log2_step,
                  const std::vector<std::uint32_t>& indices,
                  const std::vector<std::int32_t>& positions) {
@@ -72,7 +72,7 @@ std::string rlpd(std::uint32_t vertices, std::uint32_t frames, std::int32_t log2
 
 class FrameSourceTest : public ScratchFolderTest {
  protected:
-  // The error of opening, otherwise that of the first bad frame, otherwise "".
+  // Returns the error of opening, otherwise that of the first bad frame, otherwise "".
   static std::string error_of(const InputOptions& options) {
     const auto source = open_frame_source(options);
     if (!source) return source.error().message;
@@ -233,7 +233,7 @@ TEST_F(FrameSourceTest, NamesFrameAndVertexOfNonFiniteValues) {
 
 class MeshSequenceTest : public FrameSourceTest {
  protected:
-  // A frame that is identified by its first coordinate.
+  // Returns a frame that is identified by its first coordinate.
   static std::string frame(int number) {
     return "v " + std::to_string(number) + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   }
@@ -359,7 +359,7 @@ TEST_F(FrameSourceTest, ReadsDecoderOutput) {
       open_frame_source({put("a.rlpd", rlpd(3, 5, -1, {0, 1, 2}, positions)), "", {}});
   ASSERT_TRUE(source) << source.error().message;
   FrameSource& s = **source;
-  EXPECT_EQ(s.num_frames(), 2U);  // of 5 announced
+  EXPECT_EQ(s.num_frames(), 2U);  // 5 are announced
   EXPECT_EQ(s.frame_rate(), (FrameRate{25, 1}));
   EXPECT_EQ(s.triangles(), (std::vector<Triangle>{{0, 1, 2}}));
   std::vector<float> xyz(9);

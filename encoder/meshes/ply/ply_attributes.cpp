@@ -26,7 +26,7 @@ std::uint64_t bytes(const std::vector<T>& all) {
   return std::uint64_t{all.capacity()} * sizeof(T);
 }
 
-// Whether a property may hold a component of a colour, and the number that stands for 1.
+// Returns the number that means 1, if a property may hold a component of a colour.
 std::optional<float> colour_unit(const PlyProperty& p) {
   if (is_ply_float(p.type)) return 1.0F;
   if (p.type == PlyType::kU8) return 255.0F;
@@ -41,7 +41,7 @@ std::optional<std::size_t> index_of(const PlyElement& element, std::string_view 
   return std::nullopt;
 }
 
-// Gives the properties of these names a role if all of them are there.
+// Gives the properties of these names a role if all of them exist.
 bool claim(const PlyElement& element, Names names, Kind kind, std::vector<PlyRole>& roles) {
   const bool is_colour = kind == Kind::kColour || kind == Kind::kFaceColour;
   for (const std::string_view name : names) {

@@ -27,7 +27,7 @@ SingleMesh mesh_of(const std::string& text) {
   return mesh ? std::move(*mesh) : SingleMesh{};
 }
 
-// Text, with the same numbers after the position of each vertex.
+// Returns a text mesh with the same numbers after the position of each vertex.
 SingleMesh text_mesh(const std::string& of_vertex, const std::string& values,
                      const std::string& of_face = "", const std::string& face_values = "") {
   std::string text = header("ascii", of_vertex, of_face);

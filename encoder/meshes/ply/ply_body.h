@@ -16,17 +16,18 @@
 
 namespace rlpc {
 
-// Reads the values of a text body in order; gives zeros after an error.
+// Reads the values of a text body in order; returns zeros after an error.
 class TextBody {
  public:
   TextBody(std::string_view text, const PlyHeader& header)
       : words_(text.substr(header.body), header.body_line), bytes_(text.size() - header.body) {}
 
-  // The position of the last value, for error messages.
+  // Returns the position of the last value, for error messages.
   std::string place() const { return ":" + std::to_string(line_); }
   const std::optional<std::string>& problem() const { return problem_; }
   std::uint64_t bytes_left() const { return bytes_ - words_.position(); }
-  // The smallest size of a value: a character and a separator, which the last value may lack.
+  // Returns the smallest size of a value: a character and a separator, which the last value may
+  // lack.
   static std::uint64_t least_bytes(PlyType) { return 2; }
   static std::uint64_t spare_bytes() { return 1; }
 
@@ -35,7 +36,7 @@ class TextBody {
     left_ = 0.0F;
     return problem_ ? 0 : parse_coordinate(word, problem_, &left_);
   }
-  // What the number exceeds the last coordinate by.
+  // Returns the last number minus the coordinate that it became.
   float left() const { return left_; }
 
   std::int64_t integer(PlyType) {

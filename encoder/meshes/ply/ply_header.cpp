@@ -179,8 +179,8 @@ class HeaderParser {
   bool has_format_ = false;
   bool at_end_header_ = false;
   PlyHeader header_;
-  std::set<std::string_view> elements_;    // their names, in text_
-  std::set<std::string_view> properties_;  // of the last element
+  std::set<std::string_view> elements_;    // names of elements, in text_
+  std::set<std::string_view> properties_;  // names of properties of the last element
   std::optional<InputError> error_;
 };
 

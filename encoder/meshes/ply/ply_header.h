@@ -33,9 +33,9 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kText;
   std::vector<PlyElement> elements;     // in the order of the file
-  std::optional<FrameRate> frame_rate;  // of "comment frame_rate N/D"
-  std::vector<std::string> textures;    // of "comment TextureFile NAME"
-  bool has_info = false;                // lines "obj_info"
+  std::optional<FrameRate> frame_rate;  // from "comment frame_rate N/D"
+  std::vector<std::string> textures;    // from "comment TextureFile NAME"
+  bool has_info = false;                // there are lines "obj_info"
   std::size_t body = 0;                 // offset of the first byte after the header
   std::uint64_t body_line = 0;          // number of the line that begins there
 };

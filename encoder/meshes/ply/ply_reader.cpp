@@ -140,7 +140,7 @@ class PlyReader {
     }
   }
 
-  // Few files have numbers that floats do not hold.
+  // Keeps the difference to a float; few files have numbers that floats cannot represent.
   void keep_left(std::size_t coordinate) {
     if (body_.left() == 0.0F) return;
     if (mesh_.left.empty()) mesh_.left.resize(mesh_.xyz.size());

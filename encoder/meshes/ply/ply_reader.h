@@ -1,7 +1,7 @@
 // PLY: the positions and polygons of the elements "vertex" and "face", and their attributes
 // (ply_attributes.h); everything else is skipped. Text and binary of both byte orders.
 //
-// As strict as the OBJ reader; and the file must hold exactly what its header announces.
+// It is as strict as the OBJ reader; and the file must hold exactly what its header announces.
 #pragma once
 
 #include <string>

@@ -23,7 +23,7 @@ void put(std::string& bytes, std::uint64_t value, std::size_t size, bool little_
   }
 }
 
-// The same mesh as kText.
+// Returns the same mesh as kText.
 std::string binary(bool little_endian, float last = 0.5F, std::uint64_t corner = 3) {
   std::string bytes = "ply\nformat binary_";
   bytes += (little_endian ? "little" : "big") + ("_endian 1.0\n" + kElements);
@@ -95,7 +95,7 @@ TEST(PlyReader, ReadsPointCloudsAndTheFrameRate) {
 }
 
 TEST(PlyReader, EveryProperPrefixFails) {
-  const std::string text = kText.substr(0, kText.size() - 1);  // without the last line end
+  const std::string text = kText.substr(0, kText.size() - 1);  // the last line end is missing
   for (const std::string& whole : {text, binary(true), binary(false)}) {
     for (std::size_t n = 0; n < whole.size(); ++n) {
       const std::vector<char> exact(whole.begin(),

@@ -37,7 +37,7 @@ struct Layout {
   std::int32_t points = 0;
   std::int32_t frames = 0;
   std::uint64_t first_byte = 0;  // offset of the positions
-  // Of PC2 files: the frame of the first sample, and frames per sample. They are not used.
+  // The frame of the first sample, and frames per sample, in PC2 files. They are not used.
   float start = 0.0F;
   float rate = 1.0F;
 };
@@ -94,7 +94,7 @@ std::optional<InputError> check_points(const std::string& path, const Layout& la
                     " vertices; use the mesh and the cache of the same export"};
 }
 
-// Compares it with the size of the file, too.
+// Compares the header with the mesh and with the size of the file.
 std::optional<InputError> check_layout(const InputFile& file, const Layout& layout,
                                        const std::string& mesh_path,
                                        std::uint32_t num_vertices) {
@@ -148,7 +148,7 @@ bool may_begin_cache(const std::string& begin, std::uint32_t num_vertices) {
   return begin.size() >= kMddHeaderBytes && load_u32_be(begin, 4) == num_vertices;
 }
 
-// What is lost of a PC2 header.
+// Returns notes on the contents of a PC2 header that get lost.
 std::vector<std::string> notes_on_pc2(const std::string& path, const Layout& layout) {
   if (!std::isfinite(layout.start) || !std::isfinite(layout.rate)) {
     return {"dropped: start and sample rate of " + path +
@@ -171,7 +171,7 @@ struct FrameTimes {
   std::optional<FrameRate> rate;
   bool may_be_times = true;  // they are finite and not descending
   bool are_even = true;
-  bool are_equal = false;  // of two frames or more
+  bool are_equal = false;  // all times are equal, of two frames or more
   double start = 0.0;
   double interval = 0.0;  // mean
 };
@@ -206,7 +206,7 @@ InputResult<FrameTimes> read_times(InputFile& file, const Layout& layout,
   return told;
 }
 
-// What is lost of the times of an MDD file.
+// Returns notes on times of an MDD file that get lost.
 std::vector<std::string> notes_on_times(const std::string& path, const FrameTimes& times,
                                         bool has_rate) {
   const std::string fps = has_rate ? "" : "; frames are 1/30 s apart (--fps sets another rate)";
@@ -256,7 +256,8 @@ class PointCache : public FrameSource {
 
   std::string file_of(std::uint32_t /*frame*/) const override { return file_.path(); }
 
-  // Of frames that cannot be read, reading them again says why.
+  // Compares the axes of frames. Stops at a frame that cannot be read: reading it again reports
+  // why.
   void compare_axes(std::span<const float> mesh) {
     AxesFit fit(mesh);
     std::vector<float> xyz(mesh.size());

@@ -23,7 +23,7 @@ namespace rlpc {
 // are MDD if the header matches the mesh and the file size.
 InputResult<std::unique_ptr<FrameSource>> open_point_cache(const InputOptions& options);
 
-// From a pipe, frame by frame; see open_frame_stream().
+// Opens a PC2 file from a pipe, frame by frame; see open_frame_stream().
 InputResult<std::unique_ptr<FrameStream>> open_pc2_stream(
     std::FILE* file, const std::string& name, const std::string& mesh_path,
     const std::optional<FrameRate>& frame_rate, std::uint64_t max_memory_bytes);

@@ -27,7 +27,7 @@ class PointGrid {
       const double size = largest[c] - smallest_[c];
       cells_per_unit_[c] = size > 0.0 ? static_cast<double>(width_) / size : 0.0;
     }
-    // Sorted by counting.
+    // Sort the points by counting.
     first_.assign(width_ * width_ + 1, 0);
     for (const Point2& p : points) ++first_[cell_of(p) + 1];
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
@@ -38,8 +38,8 @@ class PointGrid {
     }
   }
 
-  // Whether the predicate is true of a point, by its number, in the cells that a triangle
-  // touches; those of its box.
+  // Whether the predicate is true for the number of a point in the cells that the box of a
+  // triangle touches.
   template <class Predicate>
   bool any_near(const Point2& a, const Point2& b, const Point2& c,
                 Predicate&& predicate) const {
@@ -59,7 +59,7 @@ class PointGrid {
   }
 
  private:
-  // Of cells: points on an edge of a triangle may be outside its box, by rounding.
+  // Margin in cells: rounding may put points on an edge of a triangle outside its box.
   static constexpr double kMargin = 0x1p-20;
 
   std::size_t cell_along(std::size_t axis, double x, double more = 0.0) const {
@@ -73,8 +73,8 @@ class PointGrid {
   Point2 smallest_;
   std::size_t width_ = 1;  // cells along each axis
   Point2 cells_per_unit_{};
-  std::vector<std::uint32_t> first_;   // [cell]: of its points; then their number
-  std::vector<std::uint32_t> points_;  // by cell
+  std::vector<std::uint32_t> first_;   // [cell]: first of its points; then their total
+  std::vector<std::uint32_t> points_;  // sorted by cell
 };
 
 }  // namespace rlpc

@@ -22,7 +22,7 @@ Vec3 scaled(const Vec3& a, double factor) {
   return {factor * a[0], factor * a[1], factor * a[2]};
 }
 
-// Twice the area of a triangle, negative if it turns clockwise.
+// Returns twice the area of a triangle, negative if it turns clockwise.
 double turn(const Point2& a, const Point2& b, const Point2& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
@@ -31,10 +31,10 @@ double turn(const Point2& a, const Point2& b, const Point2& c) {
 struct FlatPolygon {
   std::vector<Point2> corners;
   double twice_area = 0.0;
-  double near_zero = 0.0;  // twice the area of triangles that are but a line
+  double near_zero = 0.0;  // twice the area of triangles that are only a line
 };
 
-// None: it has no area.
+// Projects a polygon; none: it has no area.
 std::optional<FlatPolygon> flatten(std::span<const Vec3> corners) {
   Vec3 normal{};
   double largest = 0.0;
@@ -64,7 +64,7 @@ std::optional<FlatPolygon> flatten(std::span<const Vec3> corners) {
   return flat;
 }
 
-// Twice the area of triangles that are turned over.
+// Returns twice the area of triangles that are turned over.
 double folded_area(const FlatPolygon& flat, std::span<const PolygonTriangle> triangles) {
   double area = 0.0;
   for (const PolygonTriangle& t : triangles) {
@@ -79,7 +79,7 @@ std::vector<PolygonTriangle> fan_of(std::size_t num_corners) {
   return fan;
 }
 
-// Cuts off corners, one after the other, whose triangles lie inside what is left.
+// Cuts off corners, one after the other, whose triangles lie inside the rest of the polygon.
 class EarClipper {
  public:
   explicit EarClipper(const FlatPolygon& flat)
@@ -94,7 +94,7 @@ class EarClipper {
     max_comparisons_ = std::max(kComparisons, 64 * std::uint64_t{n});
   }
 
-  // Whether clip() has not had enough comparisons.
+  // Whether clip() ran out of comparisons.
   bool gave_up() const { return comparisons_ > max_comparisons_; }
 
   std::vector<PolygonTriangle> clip() {
@@ -114,7 +114,7 @@ class EarClipper {
         if (!ear) break;
       }
       place = next_[*ear];
-      // Going on behind the next corner makes fewer thin triangles.
+      // Continuing after the next corner makes fewer thin triangles.
       untested.push_back(previous_[*ear]);
       untested.push_back(place);
       cut(*ear);
@@ -158,7 +158,7 @@ class EarClipper {
     });
   }
 
-  // Whether there and back is the same way.
+  // Whether the way there and back is the same.
   bool is_spike(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
     if (is_right_turn(a, b, c)) return false;
     double along = 0.0;
@@ -201,7 +201,7 @@ class EarClipper {
     return coincide(previous_[p], end) || coincide(next_[p], end);
   }
 
-  // The first that may be cut off from `place` on, perhaps touching.
+  // Returns the first corner that may be cut off from `place` on, perhaps touching.
   std::optional<std::uint32_t> find_ear(std::uint32_t place) {
     std::uint32_t b = place;
     do {
@@ -212,7 +212,7 @@ class EarClipper {
     return std::nullopt;
   }
 
-  // Whatever is left, which crosses itself: convex corners first.
+  // Cuts the rest, which crosses itself: convex corners first.
   void finish(std::uint32_t place) {
     std::size_t rejected = 0;
     while (triangles_.size() + 2 < corners_.size()) {
@@ -233,7 +233,7 @@ class EarClipper {
   std::vector<std::uint32_t> next_;
   std::vector<bool> is_left_;
   std::vector<PolygonTriangle> triangles_;
-  std::uint64_t comparisons_ = 0;  // of points with triangles
+  std::uint64_t comparisons_ = 0;  // comparisons of points with triangles
   std::uint64_t max_comparisons_ = 0;
 };
 

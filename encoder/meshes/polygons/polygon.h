@@ -13,8 +13,8 @@ using PolygonTriangle = std::array<std::uint32_t, 3>;
 
 // Splits a polygon, seen along its mean normal, into n - 2 triangles between its corners, each
 // turning the same way. Returns none if the fan from the first corner, (0, 1, 2), (0, 2, 3) and
-// so on, covers it, as that of every convex polygon does; or if nothing covers it better:
-// outlines that cross themselves, or without an area.
+// so on, covers it, as it does for every convex polygon; or if nothing covers it better, as for
+// outlines that cross themselves or have no area.
 //
 // corners: positions of the n corners, at least 3, all finite, in order. Corners may coincide,
 //   lie on edges or on one line; holes may be joined to the outline by pairs of edges.

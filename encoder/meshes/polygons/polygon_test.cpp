@@ -29,7 +29,7 @@ std::uint32_t below(Random& random, std::size_t count) {
   return static_cast<std::uint32_t>(random() % count);
 }
 
-// Twice the area, exactly; below 0 where it turns clockwise.
+// Returns twice the area, exactly; below 0 if it turns clockwise.
 std::int64_t twice_area(const Point& a, const Point& b, const Point& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
@@ -42,7 +42,7 @@ std::int64_t twice_area(const Outline& outline) {
   return area;
 }
 
-// In a plane of space, with coordinates that floats hold exactly.
+// Places an outline in a plane of space, with coordinates that floats represent exactly.
 Corners placed(const Outline& outline, const std::array<std::array<int, 3>, 2>& axes) {
   Corners corners;
   for (const Point& p : outline) {
@@ -63,9 +63,8 @@ std::vector<PolygonTriangle> triangles_of(const Corners& corners) {
   return triangles;
 }
 
-// Triangles that all turn the same way, and whose edges are those of the outline once the ones
-// that go there and back have been taken away, cover each point of it once. Returns what is
-// wrong.
+// Returns what is wrong with triangles. If all turn the same way, and their edges are those of
+// the outline once those that go there and back are removed, they cover each point of it once.
 std::string find_fault(const Outline& outline, const std::vector<PolygonTriangle>& triangles) {
   if (triangles.size() + 2 != outline.size()) return "not n - 2 triangles";
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
@@ -121,7 +120,7 @@ bool cross(const Point& a, const Point& b, const Point& c, const Point& d) {
   return side(a, b, c) * side(a, b, d) <= 0 && side(c, d, a) * side(c, d, b) <= 0;
 }
 
-// Random points, joined in an order that is changed until no edges cross.
+// Returns random points, joined in an order that is changed until no edges cross.
 Outline untangled(Random& random, std::size_t n, std::int64_t size) {
   Outline points;
   while (points.size() < n) {
@@ -189,7 +188,7 @@ class SquareTree {
   Outline outline_;
 };
 
-// Without some of the corners that lie on straight lines.
+// Returns an outline without some of the corners that lie on straight lines.
 Outline without_straight_corners(const Outline& outline, Random& random) {
   Outline kept;
   const std::size_t n = outline.size();
@@ -218,7 +217,7 @@ TEST(Polygon, LeavesConvexOnesAsFans) {
                 outline.end());
     EXPECT_TRUE(split_polygon(placed(outline, {{{1, 0, 2}, {0, 1, -1}}})).empty());
   }
-  // Not flat, yet convex as seen along its normal.
+  // This one is not flat, yet convex as seen along its normal.
   EXPECT_TRUE(split_polygon(Corners{{0, 0, 0}, {1, 0, 0.3}, {1, 1, 0}, {0, 1, 0.3}}).empty());
 }
 
@@ -287,7 +286,7 @@ TEST(Polygon, CoversSpiralsAndCombsOfThousands) {
   expect_covered(spiral, random, "spiral");
 }
 
-// An outline that takes more comparisons than there may be is not folded silently.
+// An outline that takes more comparisons than allowed is not folded silently.
 TEST(Polygon, SaysThatItGaveUp) {
   // A comb of long teeth that lean over: the box of each is in the way of all others.
   for (const int num_corners : {200, 20000}) {
@@ -303,7 +302,7 @@ TEST(Polygon, SaysThatItGaveUp) {
   }
 }
 
-// As files have them: turned in space, with seven digits.
+// Outlines are turned in space and have seven digits, as in files.
 TEST(Polygon, CoversOutlinesThatAreNotQuiteFlat) {
   Random random(8);
   std::normal_distribution<double> normal;

@@ -76,7 +76,7 @@ InputResult<RlpdHeader> read_header(InputFile& file) {
   return parse_header(file.path(), bytes);
 }
 
-// The number of frames present, from the size of the file.
+// Returns the number of frames present, from the size of the file.
 InputResult<std::uint32_t> count_frames(const InputFile& file, const RlpdHeader& header) {
   const std::string& path = file.path();
   if (header.num_vertices == 0) return InputError{path + ": no vertices (byte 8)"};
@@ -124,7 +124,7 @@ InputResult<std::vector<Triangle>> read_triangles(InputFile& file, const RlpdHea
   return parse_triangles(file.path(), header, bytes);
 }
 
-// Positions have up to 28 bits, floats 24.
+// Returns a position as a double: it has up to 28 bits, floats have 24.
 double exact_position(const Grid& grid, std::size_t axis, std::int32_t position) {
   return (static_cast<double>(position) + grid.origin[axis]) * exact_exp2(grid.log2_step);
 }
@@ -236,7 +236,7 @@ InputResult<std::unique_ptr<FrameStream>> open_rlpd_stream(
   }
   std::vector<char> indices;
   while (indices.size() < std::size_t{header->num_triangles} * 12) {
-    // In steps, as the header may announce more than there is.
+    // Reads in steps, as the header may announce more than the file has.
     constexpr std::size_t kStep = std::size_t{1} << 20;  // fixed: memory
     const std::size_t before = indices.size();
     indices.resize(std::min(before + kStep, std::size_t{header->num_triangles} * 12));

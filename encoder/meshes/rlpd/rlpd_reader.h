@@ -18,7 +18,7 @@ InputResult<std::unique_ptr<FrameSource>> open_rlpd(
     const std::string& path, const std::optional<FrameRate>& frame_rate,
     std::uint64_t max_memory_bytes = kUsualEncoderBytes);
 
-// From a pipe, frame by frame; see open_frame_stream().
+// Opens it from a pipe, frame by frame; see open_frame_stream().
 InputResult<std::unique_ptr<FrameStream>> open_rlpd_stream(
     std::FILE* file, const std::string& name, const std::optional<FrameRate>& frame_rate,
     std::uint64_t max_memory_bytes);

@@ -10,10 +10,10 @@ namespace {
 struct Face {
   std::size_t first_triangle = 0;
   std::uint32_t num_corners = 0;
-  std::uint32_t turned = 0;  // the corner that comes first in the smallest rotation
+  std::uint32_t turned = 0;  // first corner of the smallest rotation
 };
 
-// The first corner of the rotation that is the smallest as a list.
+// Returns the first corner of the rotation that is the smallest as a list.
 std::uint32_t smallest_rotation(const std::vector<std::uint32_t>& corners) {
   const std::size_t n = corners.size();
   std::size_t a = 0;
@@ -57,10 +57,10 @@ class SortedFaces {
   }
 
   std::size_t size() const { return faces_.size(); }
-  // The n-th face by its vertices.
+  // Returns the n-th face by its vertices.
   const Face& operator[](std::size_t n) const { return faces_[order_[n]]; }
 
-  // A vertex of a face, counted from the first corner of its smallest rotation.
+  // Returns a vertex of a face, counted from the first corner of its smallest rotation.
   std::uint32_t vertex(const Face& face, std::uint32_t corner) const {
     return vertex_at(face, (face.turned + corner) % face.num_corners);
   }
@@ -70,7 +70,8 @@ class SortedFaces {
     return corners;
   }
 
-  // By the number of corners, then by vertices: below 0 if `a`, a face of this mesh, is less.
+  // Compares by number of corners, then by vertices: below 0 if `a`, a face of this mesh, is
+  // less.
   int compare(const Face& a, const SortedFaces& others, const Face& b) const {
     if (a.num_corners != b.num_corners) return a.num_corners < b.num_corners ? -1 : 1;
     for (std::uint32_t k = 0; k < a.num_corners; ++k) {

@@ -13,7 +13,7 @@
 
 namespace rlpc {
 
-// Faces as fans of triangles. polygons: those of more than one triangle, in order.
+// Faces as fans of triangles. polygons: the faces of more than one triangle, in order.
 struct FaceList {
   std::span<const Triangle> triangles;
   std::span<const MeshPolygon> polygons;
@@ -29,7 +29,7 @@ struct OddFace {
 // the same corner of the same face; or a face without counterpart. Faces are the same if they
 // have the same vertices in the same cyclic order.
 //
-// Memory: about kMatchBytes for each triangle of both. Time: n * log n.
+// Needs about kMatchBytes for each triangle of both, and n * log n time.
 inline constexpr std::uint64_t kMatchBytes = 40;
 std::variant<std::vector<std::uint32_t>, OddFace> match_faces(const FaceList& first,
                                                               const FaceList& other);

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Names of the files in a folder.
+// Returns the names of the files in a folder.
 InputResult<std::vector<std::string>> list_names(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code ec;
@@ -37,12 +37,12 @@ InputResult<std::vector<std::string>> list_names(const fs::path& folder) {
     it.increment(ec);
   }
   if (ec) return InputError{folder.string() + ": cannot list the folder: " + ec.message()};
-  // For the first of several problems: systems list files in any order.
+  // Sort names, to report the same of several problems: systems list files in any order.
   std::sort(names.begin(), names.end(), natural_less);
   return names;
 }
 
-// The names that match, in the folder.
+// Returns the names in the folder that match.
 template <class Predicate>
 InputResult<std::vector<std::string>> list_matching(const fs::path& folder, Predicate matches,
                                                     const std::string& if_none) {
@@ -85,8 +85,8 @@ bool are_near(const SourceAttribute& a, const SourceAttribute& b,
   return true;
 }
 
-// Gives the numbers of a set of triangles, which stand for `names`, those that `others` give
-// these names. Numbers without a name are those of nothing.
+// Changes the numbers of a set of triangles, which mean `names`, to those of the same names in
+// `others`. Numbers without a name mean nothing.
 void renumber(const std::vector<std::string>& names, const std::vector<std::string>& others,
               SourceAttribute& set) {
   std::vector<float> number_of;
@@ -103,7 +103,7 @@ void renumber(const std::vector<std::string>& names, const std::vector<std::stri
 
 class MeshSequence : public FrameSource {
  public:
-  // files: with the triangles of `shape`.
+  // files: have the triangles of `shape`.
   MeshSequence(Shape shape, SequenceFiles files)
       : FrameSource(std::move(shape)),
         files_(std::move(files)),
@@ -139,7 +139,7 @@ class MeshSequence : public FrameSource {
     return mesh;
   }
 
-  // Notes what the first file has not, or has otherwise; each set once.
+  // Notes sets that the first file does not have, or has with other values; each set once.
   void compare_attributes(std::uint32_t frame, SingleMesh& mesh) {
     has_compared_attributes_[frame] = true;
     for (SourceAttribute& set : mesh.attributes.sets) {
@@ -149,7 +149,7 @@ class MeshSequence : public FrameSource {
         renumber(mesh.materials.part_names, materials().part_names, set);
       }
       const SourceAttribute* const first = find_attribute(attributes(), set.name);
-      // Normals move with the frames: those of the stream are compared (add_later_normals).
+      // Normals move with the frames: normals of the stream are compared (add_later_normals).
       if (first != nullptr && set.name == "normal") continue;
       if (first != nullptr && are_near(*first, set, triangles())) continue;
       note_once(frame, set.name,
@@ -181,9 +181,9 @@ class MeshSequence : public FrameSource {
     if (is_other(&SourceMaterials::textures)) note_others(frame, "textures");
   }
 
-  // Passes on what is dropped from this file, and from no other before.
+  // Passes on notes about data dropped from this file, unless an earlier file had them.
   void compare_note(std::uint32_t frame, const std::string& note) {
-    // The same with another number, or other names, is nothing new.
+    // The same note with another number, or other names, is not new.
     const std::string kind = note.substr(0, note.find_first_of("(0123456789"));
     const auto is_known = [&](const std::string& known) { return known.starts_with(kind); };
     if (std::any_of(notes().begin(), notes().end(), is_known)) return;
@@ -276,7 +276,7 @@ InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(FrameFiles files,
   SequenceFiles fitting(std::move(paths), std::move(faces), shape.triangles, shape.num_vertices,
                         options.max_memory_bytes);
   add_later_normals(fitting, shape.attributes);
-  // With decoded positions of these frames.
+  // Decoded positions of these frames are kept too.
   for (const PosedNormals& later : shape.attributes.later_normals)
     shape.memory_bytes += 4 * sizeof(float) * later.normals.size();
   return std::unique_ptr<FrameSource>(

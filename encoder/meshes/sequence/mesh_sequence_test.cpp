@@ -20,7 +20,7 @@ using Face = std::vector<std::uint32_t>;
 
 class MeshSequenceFilesTest : public ScratchFolderTest {
  protected:
-  // The error of opening or of the first bad frame, or the notes, a line each.
+  // Returns the error of opening or of the first bad frame, or the notes, a line each.
   static std::string result_of(const InputOptions& options) {
     const auto source = open_frame_source(options);
     if (!source) return source.error().message;
@@ -35,7 +35,7 @@ class MeshSequenceFilesTest : public ScratchFolderTest {
   std::string result() const { return result_of({folder_.string(), "", {}}); }
 };
 
-// Faces of 3 to 6 different vertices.
+// Returns faces of 3 to 6 different vertices.
 std::vector<Face> random_faces(Random& random, std::uint32_t num_vertices) {
   std::vector<std::uint32_t> all(num_vertices);
   for (std::uint32_t v = 0; v < num_vertices; ++v) all[v] = v;
@@ -136,7 +136,7 @@ TEST_F(MeshSequenceFilesTest, SplitPolygonsAsInTheFirstFrame) {
   EXPECT_EQ(result(), "");
 }
 
-// A strip of triangles; each corner has the normal of an angle, by its vertex.
+// Returns a strip of triangles; each corner has the normal of the angle of its vertex.
 std::string strip_with_normals(const std::vector<double>& angles) {
   std::string text;
   for (std::size_t v = 0; v < angles.size(); ++v) {
@@ -154,7 +154,7 @@ std::string strip_with_normals(const std::vector<double>& angles) {
   return text;
 }
 
-// Whatever shares a normal in the first frame: each corner has its own in the others.
+// Corners may share a normal in the first frame; each has its own in the others.
 TEST_F(MeshSequenceFilesTest, FollowNormalsOfLaterFrames) {
   Random random(3);
   for (int i = 0; i < 50; ++i) {

@@ -10,7 +10,7 @@
 namespace rlpc {
 namespace {
 
-// The sets of a mesh in the corners of another: corner_of[c] is the one that was c.
+// Moves the sets of a mesh to the corners of another: corner_of[c] is the one that was c.
 void move_corners(const std::vector<std::uint32_t>& corner_of, SourceAttributes& attributes) {
   for (SourceAttribute& set : attributes.sets) {
     if (set.domain == AttributeDomain::kTriangle) {
@@ -28,7 +28,7 @@ void move_corners(const std::vector<std::uint32_t>& corner_of, SourceAttributes&
   }
 }
 
-// Counted from 1, as in OBJ files.
+// Returns the corners of a face, counted from 1, as in OBJ files.
 std::string corners(const std::vector<std::uint32_t>& vertices) {
   constexpr std::size_t kMost = 8;
   std::string text = "f";
@@ -94,7 +94,7 @@ std::optional<InputError> SequenceFiles::match_with_first(std::uint32_t frame,
     move_corners(*corner_of, mesh.attributes);
     return std::nullopt;
   }
-  // Perhaps one of them has been split into triangles.
+  // One of the meshes may have been split into triangles.
   const auto split = match_faces({triangles_, {}}, {mesh.triangles, {}});
   if (const auto* const corner_of = std::get_if<std::vector<std::uint32_t>>(&split)) {
     move_corners(*corner_of, mesh.attributes);

@@ -1,4 +1,4 @@
-// The files of a sequence of meshes, each read as the faces of the first.
+// The files of a sequence of meshes, each read with the faces of the first.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace rlpc {
 
-// What the first file of a sequence says of its faces and surface.
+// Faces and materials of the first file of a sequence.
 struct FirstMesh {
   std::vector<MeshPolygon> polygons;
   PolygonCuts cuts;

@@ -26,19 +26,20 @@ void put(const Normal& normal, std::size_t i, std::vector<float>& values) {
   std::ranges::copy(normal, values.begin() + 3 * static_cast<std::ptrdiff_t>(i));
 }
 
-// How many later frames are read: fewer of large meshes, and of those without enough memory.
+// Returns the number of later frames to read: fewer for large meshes, or with too little
+// memory.
 std::size_t max_frames(std::size_t num_corners, std::uint64_t max_memory_bytes) {
   constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 27;    // fixed: memory
-  constexpr std::uint64_t kPart = 64;                            // fixed: of the limit
+  constexpr std::uint64_t kPart = 64;                            // fixed: divides the limit
   constexpr std::uint64_t kMaxCorners = std::uint64_t{1} << 20;  // fixed: time, of all frames
-  constexpr std::uint64_t kMin = 15;   // fixed: as many as of glTF, where memory allows
+  constexpr std::uint64_t kMin = 15;   // fixed: as many as for glTF, if memory allows
   constexpr std::uint64_t kMax = 255;  // fixed: time
   const std::uint64_t bytes = std::min(kMaxBytes, max_memory_bytes / kPart);
   const std::uint64_t fit = bytes / (sizeof(Normal) * num_corners);
   return std::min(fit, std::clamp<std::uint64_t>(kMaxCorners / num_corners, kMin, kMax));
 }
 
-// Frames 1 to num_frames - 1, or `most` of them at equal distances, the last included.
+// Returns frames 1 to num_frames - 1, or `most` of them at equal distances, the last included.
 std::vector<std::uint32_t> spread_out(std::size_t num_frames, std::size_t most) {
   const std::size_t later = num_frames - 1;
   const std::size_t count = std::min(later, most);
@@ -49,7 +50,7 @@ std::vector<std::uint32_t> spread_out(std::size_t num_frames, std::size_t most) 
   return frames;
 }
 
-// The normals of later frames by the values of the first.
+// Collects the normals of later frames by the values of the first.
 class NormalFollower {
  public:
   NormalFollower(std::size_t num_corners, SourceAttributes& attributes, SourceAttribute& first)
@@ -86,7 +87,7 @@ class NormalFollower {
   }
 
  private:
-  // Gives a value a copy, the last one.
+  // Appends a copy of a value.
   void split(std::uint32_t value) {
     const auto append = [&](std::vector<float>& values) {
       const Normal copied = normal_at(values, value);

@@ -1,4 +1,4 @@
-// Normals of later files of a sequence, which say how the normals of the first move.
+// Reads normals of later files of a sequence, which show how the normals of the first move.
 #pragma once
 
 #include "encoder/meshes/sequence/sequence_files.h"
@@ -7,10 +7,10 @@
 namespace rlpc {
 
 // Reads normals of later frames into attributes.later_normals, with which the encoder compares
-// the ways to code normals and their errors: those of all frames of a small sequence, otherwise
-// of frames at equal distances, the last included. Values of `normal` that move differently
-// become several. Nothing is added of files that cannot be read: reading them for their
-// positions reports the error. Cost: that of reading these files.
+// the ways to code normals and their errors: all frames of a small sequence, otherwise frames
+// at equal distances, the last included. Values of `normal` that move differently are split.
+// Files that cannot be read are skipped: reading their positions reports the error. Takes as
+// long as reading these files.
 void add_later_normals(const SequenceFiles& files, SourceAttributes& attributes);
 
 }  // namespace rlpc

@@ -125,7 +125,7 @@ std::vector<std::string> quality_words() {
   return words;
 }
 
-// The check of CLI11 itself accepts NaN.
+// CLI11's check accepts NaN.
 const CLI::Validator kAboveZero(
     [](const std::string& word) {
       double value = 0.0;
@@ -136,7 +136,8 @@ const CLI::Validator kAboveZero(
     },
     "NUMBER");
 
-// Of --lossless: 0 for an empty text; none if it is neither that nor a number of bits.
+// Returns the bits of --lossless: 0 for an empty text; none if it is neither empty nor a
+// number.
 std::optional<int> parse_bits(const std::string& text) {
   if (text.empty()) return 0;
   int bits = 0;
@@ -214,7 +215,7 @@ void add_quality_options(CLI::App& app, EncodeCommandLine& line) {
   }
 }
 
-// What other options exclude.
+// Options that other options exclude.
 struct OutputOptions {
   CLI::Option* dry_run;
   CLI::Option* keep_order;

@@ -1,4 +1,4 @@
-// The options of rlpcenc and its help page, as CLI11 takes them.
+// Options and help page of rlpcenc, for CLI11.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ class App;
 
 namespace rlpc {
 
-// Values that are not converted yet are beside the options.
+// The options, and values that have not been converted to options yet.
 struct EncodeCommandLine {
   explicit EncodeCommandLine(EncodeOptions& to) : options(to) {}
 
@@ -26,8 +26,8 @@ struct EncodeCommandLine {
   std::optional<PartitionMethod> partition;
   std::vector<float> box;
   std::string metadata_path;
-  std::string up_axis;                    // of the metadata: y, z; empty: not noted
-  std::optional<double> metres_per_unit;  // likewise
+  std::string up_axis;                    // for the metadata: y, z; empty: not noted
+  std::optional<double> metres_per_unit;  // for the metadata; none: not noted
   std::vector<std::string> clips;         // NAME:A-B
   std::optional<double> kg;
   std::optional<double> bpvf;
@@ -35,7 +35,7 @@ struct EncodeCommandLine {
   std::optional<int> lossless;  // 0: without a number of bits
 };
 
-// `line` must outlive the parsing of the command line.
+// Adds the options. `line` must outlive the parsing of the command line.
 void add_encode_options(CLI::App& app, EncodeCommandLine& line);
 
 }  // namespace rlpc

@@ -26,7 +26,7 @@
 namespace rlpc {
 namespace {
 
-// "NAME:A-B" or "NAME:A"; none if it is something else.
+// Parses "NAME:A-B" or "NAME:A"; none if it is something else.
 std::optional<Clip> parse_clip(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string::npos) return std::nullopt;
@@ -178,7 +178,7 @@ std::optional<InputError> read_metadata(const EncodeCommandLine& line) {
   return std::nullopt;
 }
 
-// What is noted of axes and unit, with the names that USD has for them, in the metadata.
+// Adds axes and unit to the metadata, with the names that USD has for them.
 std::optional<InputError> note_units(const EncodeCommandLine& line) {
   const EncodeOptions& o = line.options;
   const bool is_given = !line.up_axis.empty() || line.metres_per_unit.has_value();

@@ -15,14 +15,14 @@ struct EncodeOptions {
   std::string output;                       // "-": standard output
   std::string order_map;                    // "-": standard output; empty: none
   std::string quality;                      // the word given; empty: none
-  std::optional<std::array<float, 6>> box;  // of --box: smallest x, y, z, then largest
+  std::optional<std::array<float, 6>> box;  // --box: smallest x, y, z, then largest
   bool dry_run = false;
   bool json = false;
   bool verbose = false;
   bool quiet = false;
   EncoderSettings settings;
 
-  // Frames are to be encoded as they arrive through standard input.
+  // Whether frames are encoded as they arrive through standard input.
   bool is_live() const {
     return settings.low_delay && (input.path == "-" || input.points == "-");
   }

@@ -26,7 +26,7 @@ class BoxOfFrames {
     }
   }
   const Box& box() const { return box_; }
-  // Room for frames that are not known: a cube around the centre.
+  // Makes room for unknown frames: a cube around the centre.
   Box enlarged() const {
     constexpr float kRoom = 8.0F;  // fixed: takes three of the 24 bits of a coordinate
     float widest = 0.0F;
@@ -51,7 +51,7 @@ void use_box(const Box& box, FrameFormat& format) {
   std::copy_n(box.begin() + 3, 3, format.box_max.begin());
 }
 
-// How far floats within a box may be from the coordinates that they are rounded from.
+// Returns how far floats within a box may be from the coordinates that they are rounded from.
 double rounding_in(const FrameFormat& format) {
   float largest = 0.0F;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -116,7 +116,7 @@ InputResult<LowDelayReport> encode_live(FrameStream& stream, const EncodeOptions
   BoxOfFrames first;
   first.add(xyz);
   use_box(options.box.value_or(first.enlarged()), format);
-  // Frames that are yet to come are within the box, too.
+  // Future frames are within the box, too.
   if (!stream.exact().empty()) format.max_rounding = rounding_in(format);
   auto encoder = FrameEncoder::create(format, options.settings, sink);
   if (!encoder) return encoder.error();

@@ -1,4 +1,4 @@
-// rlpcenc --low-delay: frames are encoded one by one, from files or as they arrive.
+// rlpcenc --low-delay: encodes frames one by one, from files or as they arrive.
 #pragma once
 
 #include <functional>
@@ -11,13 +11,14 @@
 
 namespace rlpc {
 
-// The stream ends with the frames before an error of the input.
+// Report, and the error of the input, if any, before which the stream ends.
 struct LowDelayReport {
   EncodeReport report;
   std::optional<InputError> stopped;
 };
 
-// flush: called after each frame. Errors: of the first frame; settings; the sink.
+// Encode all frames. flush: called after each frame. Errors: the first frame, the settings or
+// the sink.
 InputResult<LowDelayReport> encode_low_delay(FrameSource& source, const EncodeOptions& options,
                                              const ByteSink& sink, const Progress& progress);
 InputResult<LowDelayReport> encode_live(FrameStream& stream, const EncodeOptions& options,

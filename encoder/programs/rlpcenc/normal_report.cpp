@@ -8,7 +8,7 @@
 namespace rlpc {
 namespace {
 
-constexpr double kFarOff = 8.0;  // degrees on average: shading is visibly another
+constexpr double kFarOff = 8.0;  // degrees on average: shading differs visibly
 
 std::string degrees(double angle) {
   std::array<char, 32> text{};

@@ -1,4 +1,4 @@
-// What rlpcenc says of the normals of a stream.
+// Reports of rlpcenc about the normals of a stream.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace rlpc {
 
-// How they are coded, and their errors in the first, the middle and the worst frame.
+// Returns how normals are coded, and their errors in the first, the middle and the worst frame.
 std::string normal_text(const AttributeReport& normals);
-// A warning if those of a frame are far off on average; none otherwise.
+// Returns a warning if the normals of a frame are far off on average; otherwise none.
 std::optional<std::string> normal_warning(const AttributeReport& normals);
 
 }  // namespace rlpc

@@ -12,7 +12,7 @@
 
 namespace rlpc {
 
-// Shared by rlpcenc and rlpccmp. Infinite values become null.
+// Returns metrics for rlpcenc and rlpccmp. Infinite values become null.
 inline nlohmann::ordered_json metrics_json(const Metrics& m) {
   return {{"kg_error_percent", m.kg_error_percent},
           {"kg_sequence_error_percent", m.kg_sequence_error_percent},

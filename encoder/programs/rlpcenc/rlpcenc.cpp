@@ -41,7 +41,7 @@
 namespace rlpc {
 namespace {
 
-// What was coded without loss, and what was not.
+// Prints what was coded without loss, and what was not.
 void print_lossless(const EncodeOptions& o, const EncodeReport& r) {
   std::printf("  lossless: all coordinates of all frames, %s a grid of 2^%d units (%d bits)",
               o.settings.target.value == 0.0 ? "which lie on" : "after rounding to",
@@ -117,7 +117,7 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
               r.trials, s(r.trials));
 }
 
-// The corner of the grid that is farthest from the origin along an axis, in steps.
+// Returns the corner of the grid that is farthest from the origin along an axis, in steps.
 double farthest_origin(const EncodeReport& report) {
   double farthest = 0.0;
   for (const std::int32_t origin : report.header.grid.origin) {
@@ -133,7 +133,7 @@ bool are_floats_coarse(const EncodeReport& report) {
          kFloatSteps * report.metrics.rms_error;
 }
 
-// Whether that place is farther than the animation is large, so that moving it there helps.
+// Whether that place is farther away than the size of the animation, so that moving it helps.
 bool is_far_away(const EncodeReport& report) {
   return farthest_origin(report) > std::ldexp(2.0, report.header.position_bits);
 }
@@ -156,7 +156,7 @@ void tell_if_far_below(const Target& target, const EncodeReport& report) {
   }
 }
 
-// At least 2 % above `value`, in two digits.
+// Returns a number at least 2 % above `value`, in two digits.
 std::string a_little_above(double value) {
   const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
   char text[32];
@@ -164,7 +164,7 @@ std::string a_little_above(double value) {
   return text;
 }
 
-// The option and value that ask for what was reached.
+// Returns the option and value that ask for the result reached.
 std::string reachable_target(const Target& target, const EncodeReport& report) {
   switch (target.kind) {
     case Target::kBpvf:
@@ -221,7 +221,7 @@ int report_target(const EncodeOptions& o, const EncodeReport& report) {
 std::string finer(const EncodeOptions& o, const EncodeReport& report, const Visibility& v) {
   const Target& target = o.settings.target;
   if (target.kind == Target::kNone) {
-    // Steps of quantisation, 2^-bits of the range, explain errors of about their size only.
+    // Quantiser steps, 2^-bits of the range, explain only errors of about their size.
     const int bits = std::min(o.settings.baseline.qu, o.settings.baseline.qc);
     const double explained = 1000.0 * std::ldexp(1.0, -bits);  // per cent
     return report.metrics.kg_error_percent > explained && o.settings.components > 0
@@ -300,13 +300,13 @@ InputResult<EncodeReport> encode_source(FrameSource& source, const EncodeOptions
   return std::move(encoded->report);
 }
 
-// What gets lost is told even with --quiet.
+// Prints a note; notes of losses appear even with --quiet.
 void tell_note(const EncodeOptions& o, const std::string& name, const std::string& note) {
   if (!o.quiet || tells_loss(note)) complain(name + ": " + note);
 }
 
-// Encodes frames as they arrive. What has been written when the input fails is a stream, and
-// stays.
+// Encodes frames as they arrive. If the input fails, the frames written so far remain as a
+// stream.
 int run_live(const EncodeOptions& o) {
   const std::string mesh = o.input.points.empty() ? std::string() : o.input.path;
   if (!mesh.empty()) {
@@ -381,7 +381,7 @@ InputResult<EncodeReport> encode_to_files(const EncodeOptions& o, FrameSource& s
   return report;
 }
 
-// Notes if INPUT is probably not what the user meant.
+// Returns notes if INPUT is probably not what the user meant.
 std::vector<std::string> doubts(const EncodeOptions& o, const FrameSource& source) {
   const InputOptions& input = o.input;
   std::vector<std::string> notes;
@@ -405,7 +405,8 @@ std::vector<std::string> doubts(const EncodeOptions& o, const FrameSource& sourc
   return notes;
 }
 
-// An output that would overwrite an input file, including files that the input refers to.
+// Returns an output that would overwrite an input file, including files that the input refers
+// to.
 std::optional<std::string> written_over(const EncodeOptions& o, const FrameSource& source) {
   for (const std::string& written : {o.output, o.order_map}) {
     for (const std::string& read : source.files()) {

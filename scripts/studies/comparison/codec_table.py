@@ -23,15 +23,15 @@ PAPER = "--profile baseline --frame lcf --qu 12 --qc 12 --qdelta 12 --clusters {
 
 @dataclasses.dataclass(frozen=True)
 class Codec:
-    name: str  # as in --codecs
-    title: str  # as in tables
+    name: str  # name in --codecs
+    title: str  # name in tables
     colour: str
     what: str  # for people who read the results
     encode: tuple = RLPC_ENCODE
     decode: tuple = RLPC_DECODE
     prepare: tuple = ()  # not timed, and its output is not counted
     options: str = ""  # come before every setting
-    ladders: tuple = ()  # of settings, coarse to fine; none: "--kg X" for every error asked for
+    ladders: tuple = ()  # settings, coarse to fine; none: "--kg X" for every error asked for
     restores_order: bool = False  # the decoder does: no order map for the comparison
     line: str = "solid"
     is_shell: bool = False  # commands of the user, run by sh
@@ -188,7 +188,7 @@ def variant(name, title, colour, options, profile="Main"):
                  options=f"--profile {profile.lower()} {options}")
 
 
-# What a profile loses without one of its tools. The encoder tries cluster GOFs only if no tool is
+# Loss of a profile without one of its tools. The encoder tries cluster GOFs only if no tool is
 # disabled; so all rows are without them, and compared with the row that only disables clusters.
 MAIN_ABLATIONS = (
     MAIN,

@@ -1,4 +1,4 @@
-"""Lossless coding on a grid, beside general-purpose compressors of the same numbers."""
+"""Lossless coding on a grid, compared with general-purpose compressors of the same numbers."""
 
 import array
 import csv
@@ -123,7 +123,7 @@ def array_bytes(tool, floats, sequence, folder):
 
 
 def compressors():
-    """Those that can be run, and what the others lack."""
+    """Compressors that can be run, and what the others lack."""
     notes = [f"Skipped: {TITLES[tool]}: not installed (Debian: {package})."
              for tool, package in (("zfp", "zfp"), ("fpzip", "fpzip-utils"))
              if not shutil.which(tool)]

@@ -26,7 +26,7 @@ th { background: #f6f6f6; } th:first-child, td:first-child { text-align: left; }
 class Table:
     title: str
     head: list
-    rows: list  # of words
+    rows: list  # lists of words
 
     def markdown(self):
         lines = ["| " + " | ".join(self.head) + " |",
@@ -78,7 +78,7 @@ def described(sequence):
 
 
 def number(value, digits=3):
-    """With this many significant digits."""
+    """Text with this many significant digits."""
     if value is None:
         return NOTHING
     if value == 0:
@@ -132,7 +132,7 @@ def ratios_table(sequences, curves, points, kgs):
 
 
 def ablation_tables(sequences, curves, points, kgs):
-    """What clusters are worth; and what each other tool is worth, against Main without clusters,
+    """Gain of clusters; and gain of each other tool, against Main without clusters,
     as the variants without these tools have no clusters either."""
     names = list(dict.fromkeys(curve.codec.name for curve in curves))
     found = []
@@ -247,7 +247,7 @@ def page(title, notes, tables, pictures):
 
 
 def markdown(title, notes, tables, pictures):
-    """`pictures`: names of SVG files beside it, without extension."""
+    """`pictures`: names of SVG files in the same folder, without extension."""
     lines = [f"# {title}"]
     for name in pictures:
         lines += ["", f"![{name}](<{name}.svg>)"]

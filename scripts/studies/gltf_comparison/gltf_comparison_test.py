@@ -118,7 +118,7 @@ class Seams(unittest.TestCase):
         twice = soup.Soup([p * 2 for p in source.positions], [n * 2 for n in source.normals],
                           [source.uv[0] * 2], list(range(54)), [])
         found, alternatives = soup.match(source, twice)
-        found[3:6] = array.array("q", [30, 31, 32])  # of the other piece, which is a bit off
+        found[3:6] = array.array("q", [30, 31, 32])  # the other piece, which is a bit off
         for p in twice.positions:
             for i in range(81, 162):
                 p[i] += 1e-5
@@ -140,7 +140,7 @@ class Files(unittest.TestCase):
 
     def test_clips_of_a_file(self):
         found = gltf_file.clips(ROOT / "streams" / "inputs" / "tulip.glb")
-        self.assertEqual([clip.num_frames for clip in found], [61, 54])  # of 2 s and of 1.75 s
+        self.assertEqual([clip.num_frames for clip in found], [61, 54])  # 2 s and 1.75 s
         self.assertEqual(found[1].first_frame, found[0].num_frames)
         samples = gltf_file.frame_samples(found, 5)
         self.assertEqual(samples[0], (0, 0))

@@ -50,7 +50,7 @@ def read(path):
 
 
 def write_glb(path, document, binary):
-    """With images of URIs kept as they are."""
+    """Writes the file with images of URIs kept as they are."""
     binary += b"\0" * (-len(binary) % 4)
     document = {**document, "buffers": [{"byteLength": len(binary)}]}
     text = json.dumps(document, separators=(",", ":")).encode()
@@ -71,7 +71,7 @@ def as_glb(path, folder):
 
 
 def source_bytes(path):
-    """Of the file, and of the files that it names."""
+    """Bytes of the file, and of the files that it names."""
     size = path.stat().st_size
     if path.suffix.lower() == ".gltf":
         document = json.loads(path.read_text(encoding="utf-8"))

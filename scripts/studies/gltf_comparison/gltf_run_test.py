@@ -45,7 +45,7 @@ class Run(unittest.TestCase):
         return done
 
     def use_packages(self):
-        """Those that node finds, in place of those from npm."""
+        """Packages that node finds, in place of those from npm."""
         modules = self.folder / "out" / "npm" / "node_modules"
         modules.mkdir(parents=True)
         for name in ("gltfpack", "three"):

@@ -1,4 +1,4 @@
-"""glTF files beside gltfpack: bytes, errors of positions, texture coordinates, normals; seams."""
+"""Compares glTF files with gltfpack: bytes, errors of positions, uv and normals; seams."""
 
 import dataclasses
 import json
@@ -11,7 +11,7 @@ import paths
 import report
 import soup
 
-SAMPLES = 9  # frames that three.js draws, beside the one in the middle
+SAMPLES = 9  # frames that three.js draws, besides the one in the middle
 HERE = pathlib.Path(__file__).resolve().parent
 PACKED = "gltfpack"
 # {kg}: the KG error of gltfpack's file.
@@ -42,7 +42,7 @@ DEFINITIONS = (
 
 @dataclasses.dataclass
 class File:
-    """What one codec makes of a model."""
+    """Result of one codec for a model."""
     bytes: int
     kg_error_percent: float
     drawn: dict = None  # what measure_drawn() returns
@@ -55,7 +55,7 @@ class Model:
     num_vertices: int
     num_frames: int
     num_clips: int
-    files: dict  # by PACKED and the names of SETTINGS
+    files: dict  # keys: PACKED and the names of SETTINGS
 
 
 def run(toolbox, tool, *words, good=(0,)):

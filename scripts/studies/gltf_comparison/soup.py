@@ -24,9 +24,9 @@ MOST_CANDIDATES = 8
 @dataclasses.dataclass
 class Soup:
     positions: list  # per sample: x, y, z of each corner
-    normals: list  # likewise; empty: the file has none
+    normals: list  # per sample: x, y, z of each corner; empty: none
     uv: list  # per set: u, v of each corner
-    vertices: list  # of each corner
+    vertices: list  # index at each corner
     clips: list  # names
 
     @property
@@ -107,7 +107,7 @@ def _squares(a, corners_a, b, corners_b, samples):
 
 
 def _surface_distance(a, corners_a, b, corners_b):
-    """Of texture coordinates, beyond what quantising them does, and then of normals in the first
+    """Errors of texture coordinates, beyond those of quantising, and of normals in the first
     sample."""
     pairs = list(zip(corners_a, corners_b))
     uv = max((_largest_difference(p, q, pairs, 2) for p, q in zip(a.uv, b.uv)), default=0.0)
@@ -117,7 +117,7 @@ def _surface_distance(a, corners_a, b, corners_b):
 
 
 def _largest_difference(p, q, pairs, width):
-    """Of values that both have; the others are NaN."""
+    """Largest difference of values that both have; the others are NaN."""
     differences = (abs(p[width * i + c] - q[width * j + c]) for i, j in pairs for c in range(width))
     return max((x for x in differences if not math.isnan(x)), default=0.0)
 
@@ -164,7 +164,7 @@ def match(source, other):
 
 
 def kg_error_percent(source, other, found):
-    """Of the corners drawn in the samples, relative to the corners without their mean."""
+    """Error of the corners drawn in the samples, relative to the corners without their mean."""
     error = energy = 0.0
     used = [i for i, j in enumerate(found) if j >= 0]
     for p, q in zip(source.positions, other.positions):
@@ -235,10 +235,10 @@ def _gap(soup, corners, samples):
 
 @dataclasses.dataclass
 class Cracks:
-    groups: int  # of source vertices that coincide in the first frame
-    together: int  # of these, closed in all samples of the source
-    closed: int  # of these, closed in all samples of the other
-    largest_gap_percent: float  # of those, of the diagonal
+    groups: int  # groups of source vertices that coincide in the first frame
+    together: int  # number of these closed in all samples of the source
+    closed: int  # number of these closed in all samples of the other
+    largest_gap_percent: float  # among those, per cent of the diagonal
 
 
 def _meet(other, group, found, alternatives):

@@ -1,5 +1,5 @@
-"""The first frame of an animation as a mesh: triangles, texture coordinates and normals beside
-Draco."""
+"""The first frame of an animation as a mesh: triangles, texture coordinates and normals, compared
+with Draco."""
 
 import dataclasses
 import json
@@ -33,11 +33,11 @@ DEFINITIONS = (
 
 @dataclasses.dataclass
 class Mesh:
-    """Of an OBJ file: values as words, corners as indices from 0 or None."""
+    """Contents of an OBJ file: values as words, corners as indices from 0 or None."""
     positions: list
     uv: list
     normals: list
-    triangles: list  # of three corners (position, uv, normal)
+    triangles: list  # three corners (position, uv, normal) each
 
     def words(self, positions=None, attributes=True):
         lines = ["v " + " ".join(p) for p in positions or self.positions]
@@ -77,7 +77,7 @@ def read_obj(path):
 
 
 def mesh_of(drawn):
-    """Of the first sample: equal values are one, triangles without area are left out."""
+    """Mesh of the first sample: equal values are one, triangles without area are left out."""
     mesh = Mesh([], [], [], [])
 
     def index_of(values, width, corner, into, seen):
@@ -128,7 +128,7 @@ class Sizes:
     file: int
     uv_error_steps: float
     normal_error_degrees: float
-    stated_normal_error: float = None  # by rlpcenc
+    stated_normal_error: float = None  # reported by rlpcenc
 
     @property
     def both(self):

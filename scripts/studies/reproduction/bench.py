@@ -10,7 +10,7 @@ import subprocess
 import time
 
 
-FLAT = "Lorenzo + xz"  # as in scripts/compare
+FLAT = "Lorenzo + xz"  # name in scripts/compare
 XZ = {"id": lzma.FILTER_LZMA2, "preset": 9 | lzma.PRESET_EXTREME, "lc": 4, "pb": 0}
 
 
@@ -132,7 +132,7 @@ class Bench:
         return self._runs["flat", bits]
 
     def info(self, settings, *options):
-        """What rlpcinfo says of a stream with these settings."""
+        """Report of rlpcinfo on a stream with these settings."""
         return self.encode(settings, lambda stream, *_: json.loads(
             self.call("rlpcinfo", stream, "--json", *options)[0]))
 

@@ -15,7 +15,7 @@ from paper import OURS, page, plots, report
 COBRA = ["--profile", "main", *codec_table.COBRA.split()]
 TARGETS = (1, 0.5, 0.3, 0.2, 0.1)
 COMPONENTS = (10, 20, 40, 60, 80, 120, 160)  # or as many as the encoder chooses
-BASIS_SHARE = 0.3  # of the KG error, in the basis: 9 % of the squared error
+BASIS_SHARE = 0.3  # share of the KG error in the basis: 9 % of the squared error
 REACHED = 1.02  # times the target
 RULES = {"uniform": ("uniform", "#8a8a8a"), "cobra": ("COBRA", "#d55e00"),
          "eigenvalue": ("Heu et al.", "#0072b2")}
@@ -25,8 +25,8 @@ BASES = {  # how the basis is coded, and a colour
     "uniform": ("uniform, not predicted", "#009e73"),
     "cobra": ("COBRA", "#d55e00"),
 }
-PATH_FRAMES = 100  # of figure 4
-STUDY_KG = 0.1  # of table 1 and figures 6 to 8
+PATH_FRAMES = 100  # frames of figure 4
+STUDY_KG = 0.1  # KG error of table 1 and figures 6 to 8
 STUDY_RATES = (1, 0.5, 0.2, 0.1, 0.05, 0.02)
 
 NOTE = (
@@ -53,7 +53,7 @@ class Stream:
     basis: float
     coefficients: float
     rest: float
-    other_basis: dict  # of BASES: bpvf of the basis
+    other_basis: dict  # key of BASES: bpvf of the basis
 
     def rate(self, how):
         return self.run.bpvf - self.basis + self.other_basis[how]
@@ -68,7 +68,7 @@ class Reproduction(paper.Paper):
         super().__init__("COBRA", bench, folder, quick)
         self.study = self.measure_basis()
         self.streams = []
-        self.curves = {}  # of BASES and OURS: runs
+        self.curves = {}  # key of BASES or OURS: runs
 
     def measure_basis(self, *options, kg=STUDY_KG, rates=STUDY_RATES):
         """cobra_basis, which has the mean of each frame, with KG errors as in the papers."""

@@ -19,7 +19,7 @@ def least_squares(pairs):
 
 
 def rises(rule):
-    """By how much the KG error rises if the step of each vector is tripled, as a share."""
+    """Relative rise of the KG error if the step of each vector is tripled."""
     return [max(kg / rule["kg"] - 1, 0.0) for kg in rule["tripled_kg"]]
 
 

@@ -39,7 +39,7 @@ def model_of(num_vertices, num_triangles, num_frames, norm):
 
 
 def count_triangles(mesh):
-    """Of an OBJ file: polygons count as the triangles that they are cut into."""
+    """Triangles of an OBJ file: polygons count as the triangles that they are cut into."""
     with open(mesh, encoding="utf-8", errors="replace") as file:
         faces = (words for words in map(str.split, file) if words[:1] == ["f"])
         return sum(len(words) - 3 for words in faces)

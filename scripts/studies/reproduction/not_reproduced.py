@@ -1,4 +1,4 @@
-"""What the reproductions leave out, and why: for a researcher who looks for it."""
+"""Parts of the papers that are not reproduced, and why: for researchers who look for them."""
 
 _OTHERS = ("Other methods of the paper's comparisons ({}): no implementation is at hand, and what the "
            "papers print of them is not enough to write one that could be trusted.")
@@ -11,7 +11,7 @@ _RLPCA = (
     "the format has one step for all seed tracks of a GOF. It matters where the animation changes its "
     "size.",
     "Clusters carried from one GOF to the next: the whole sequence is one group of frames, as in the "
-    "paper, and the Baseline profile makes clusters anew for each GOF.",
+    "paper, and the Baseline profile makes new clusters for each GOF.",
     "That RLPCA suits meshes of many vertices, unlike KG: not tested, as this needs KG's coder, and "
     "sequences of several sizes.",
     "Times are not comparable: computers differ, and so do the parts that are counted.",

@@ -1,5 +1,5 @@
-"""What the reproductions of all papers share: a report on one animation, the Main and High profiles
-beside it, and the command line."""
+"""Shared by the reproductions of all papers: a report on one animation, with the Main and High
+profiles, and the command line."""
 
 import argparse
 import pathlib
@@ -32,7 +32,7 @@ class Paper:
 
     def __init__(self, name, bench, folder, quick):
         self.bench, self.quick = bench, quick
-        self.step = 2 if quick else 1  # of lists of settings
+        self.step = 2 if quick else 1  # step through lists of settings
         self.sequence = bench.sequence
         self.report = page.Report(f"{name} on {self.sequence.name}", folder, bench.tools)
         self.model = models.model_of(

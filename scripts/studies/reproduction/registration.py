@@ -18,7 +18,7 @@ from paper import OURS, page, report
 
 FRAMES = ["--profile", "high", "--gof-kind", "inter", "--frame-pattern", "previous"]
 PLAIN = [*FRAMES, "--frame-weights", "plain", "--rest", "prediction"]
-MORE_SPECTRAL = "spectral (as many)"  # as by k-way
+MORE_SPECTRAL = "spectral (as many)"  # the number of k-way
 CLUSTERINGS = {  # --partition, colour and line
     "k-way": ("kway", "#0072b2", "solid"),
     "Lloyd": ("lloyd", "#d55e00", "solid"),
@@ -26,7 +26,7 @@ CLUSTERINGS = {  # --partition, colour and line
     MORE_SPECTRAL: ("spectral", "#009e73", "dashed"),
     "motion": ("motion", "#cc79a7", "solid"),
 }
-IN_PLOTS = ("k-way", "Lloyd", "spectral", "motion")  # of single frames
+IN_PLOTS = ("k-way", "Lloyd", "spectral", "motion")  # in plots of single frames
 NO_PATCHES, LEARNED, LEARNED_MOTION = "no patches", "learned", "learned, motion"
 OTHERS = {  # options, colour and line
     NO_PATCHES: ([*PLAIN, "--patches", 0], "#8a8a8a", "solid"),
@@ -46,13 +46,14 @@ NOTE = (
     "residuals (type 1) or with them (type 2), or is predicted from its neighbours (type 3), which "
     "the encoder chooses for each patch by its cost. The DPCM of type 3 is replaced by the mean of "
     "the ring (--frame-weights plain). Vertices correspond by index, so that ICP is not needed. "
-    "Clusters are made once, Lloyd's too. Beside them, as many clusters as by k-way: spectral ones, and clusters by motion. "
+    "Clusters are made once, Lloyd's too. Besides, as many clusters as by k-way: spectral ones, and "
+    "clusters by motion. "
     "Learned: without clusters and with those by motion, with the weights that each vertex learns. "
     "Main and High: the profiles of this codec as they choose themselves. The whole sequence is one "
     "group of frames; all bytes of the stream are counted.")
 TABLE_1_NOTE = (
     f"Seconds of clustering: what the first two frames take more to encode than without patches, "
-    f"the fastest of {TIMED} encodings; all frames: likewise, once, with the search for the motions "
+    f"the fastest of {TIMED} encodings; all frames: the same, once, with the search for the motions "
     "in each frame. Published: on a 3.6 GHz PC, for one mesh.")
 TABLE_5_NOTE = (
     f"Averages of frames but the first. Quality: that of {published.PSNR} dB, by the paper's "
@@ -119,7 +120,7 @@ class Reproduction(paper.Paper):
                 self.details[method] = self.detail(method, best[0][0])
 
     def detail(self, method, kg):
-        """Of its frames, each in a unit of its own, so that each has a size."""
+        """Details of its frames, each in a unit of its own, so that each has a size."""
         pictures = self.report.folder / "pictures.tmp"
 
         def use(stream):

@@ -56,7 +56,7 @@ def at_motion(found):
 
 
 def published_gains(model):
-    """Those of table 5, in the same words; None: the paper has none."""
+    """Gains of table 5, in the same words; None: the paper has none."""
     table = published.TABLE_5.get(model)
     if table is None:
         return None
@@ -89,7 +89,7 @@ def go_together(claim, points):
 
 
 def slowest(seconds):
-    """Of the clusterings of the paper."""
+    """The slowest of the clusterings of the paper."""
     found = {name: seconds[name] for name in STATIC}
     more = ", ".join(f"{name}: {s:.3f} s" for name, s in found.items())
     return claims.counted("spectral clustering takes longest",
@@ -117,7 +117,7 @@ def _rates(words, curves, pairs):
 
 
 def _ours(curves):
-    """What patches and learned weights are worth, and Main and High against the best of the
+    """Gain of patches and learned weights, and of Main and High against the best of the
     paper's clusterings."""
     patches = [(name, name, "no patches") for name in (*STATIC, "motion")]
     items = _rates("Patches against none", curves,

@@ -12,7 +12,7 @@ from rlpca_paths import Positions
 
 SIZES = (50, 75, 100, 125, 160, 200)  # vertices per cluster
 QUICK_SIZES = (50, 100, 125, 200)
-AROUND = (0.9, 1.1)  # of the KG error at the PSNR of the paper, to interpolate
+AROUND = (0.9, 1.1)  # factors of the KG error at the PSNR of the paper, to interpolate
 SWEPT = ("k-way", "Lloyd")
 
 

@@ -27,7 +27,7 @@ class Published(unittest.TestCase):
         for rows in published.TABLE_2.values():
             for row in rows.values():
                 self.assertLessEqual(row.type1 + row.type2, 3029)
-        # What its text says: 3.8 % of table 3, 9.7, 15 and 7.8 % of table 4.
+        # Numbers of its text: 3.8 % of table 3, 9.7, 15 and 7.8 % of table 4.
         self.assertAlmostEqual(46.7 / 45.3, 1.031, 3)
         gains = [rows["spectral"][1] / rows["k-way"][1] for rows in published.TABLE_4.values()]
         for gain, stated in zip(gains, (9.7, 15, 7.8)):

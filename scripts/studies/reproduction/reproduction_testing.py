@@ -1,4 +1,4 @@
-"""What the tests of the reproductions share."""
+"""Shared by the tests of the reproductions."""
 
 import argparse
 import csv

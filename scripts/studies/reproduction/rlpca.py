@@ -9,7 +9,7 @@ import rlpca_paths
 import rlpca_published as published
 from paper import OURS, page, plots, report
 
-METHODS = {  # options beside N, L and the quantisers, and a colour (as in figure 6 (a))
+METHODS = {  # options besides N, L and the quantisers, and a colour (as in figure 6 (a))
     "PCA": (["--frame", "world", "--no-rdo"], "#8a8a8a"),
     "LPCA": (["--frame", "world", "--no-rdo"], "#009e73"),
     "RLPCA": (["--frame", "lcf", "--no-rdo"], "#0072b2"),
@@ -20,7 +20,7 @@ PCA_COMPONENTS = (5, 10, 20, 30, 45, 60, 80, 100)
 TARGETS = (3, 2, 1, 0.5, 0.3, 0.2, 0.1, 0.05)
 CLUSTERS = {30: "solid", 20: "dashed", 10: "dashed"}  # and lines
 COUNT_COLOURS = {10: "#d55e00", 20: "#009e73", 30: "#0072b2"}
-SETTINGS = {(20, 10): "#009e73", (20, 20): "#0072b2", (10, 10): "#d55e00"}  # of figure 6 (d)
+SETTINGS = {(20, 10): "#009e73", (20, 20): "#0072b2", (10, 10): "#d55e00"}  # figure 6 (d)
 BITS = 12
 
 NOTE = (
@@ -35,9 +35,9 @@ NOTE = (
 COW_NOTE = (
     "The paper prints L = 20 in the second row of its cow, the setting of the row above at another "
     "rate; L = 10 is what the rates of both methods fit.")
-QUICK_SETTINGS = ((30, 20), (30, 10), (10, 10))  # of the cow
+QUICK_SETTINGS = ((30, 20), (30, 10), (10, 10))  # for the cow
 FRAMES_SETTING = (10, 10)  # N, L of figure 6 (a)
-MOST_COMPONENTS = 64  # of a search for a rate
+MOST_COMPONENTS = 64  # in a search for a rate
 
 
 PUBLISHED_HEAD = ("CPCA bpvf", "KG, %", "enc, s", "t_FPS", "RLPCA bpvf", "KG, %", "enc, s",

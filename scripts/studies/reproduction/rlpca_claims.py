@@ -1,23 +1,23 @@
-"""Which claims of the RLPCA paper hold for measured runs, in words."""
+"""Claims of the RLPCA paper, and whether measured runs confirm them, in words."""
 
 import arithmetic
 from claims import SAME, NEGLIGIBLE, counted, curve, percent
 
 
 def equal_settings(claim, better, worse):
-    """Errors of two methods at the same N and L; those that hardly differ do not count."""
+    """Errors of two methods at the same N and L; nearly equal ones do not count."""
     known = {(r.clusters, r.components): r.kg for r in worse}
     ratios = [r.kg / known[r.clusters, r.components] for r in better
               if r.kg > 0 and known.get((r.clusters, r.components), 0) > 0]
     different = [r for r in ratios if abs(r - 1) > SAME]
-    more = f"error {percent(arithmetic.geometric_mean(ratios))} in the mean" if ratios else ""
+    more = f"error {percent(arithmetic.geometric_mean(ratios))} on average" if ratios else ""
     if len(different) < len(ratios):
         more += f"; {len(ratios) - len(different)} more are equal"
     return counted(claim, sum(r < 1 for r in different), len(different), more)
 
 
 def frame_by_frame(claim, better, worse):
-    """Errors of each frame; those that hardly differ do not count."""
+    """Errors of each frame; nearly equal ones do not count."""
     different = [(b, w) for b, w in zip(better, worse) if abs(b - w) > SAME * w]
     equal = len(better) - len(different)
     return counted(claim, sum(b < w for b, w in different), len(different),
@@ -39,7 +39,7 @@ def seeds(claim, rates):
 
 
 def best_count(runs_of_count):
-    """Which N needs the fewest bits, at the errors of all runs. runs_of_count: N, runs."""
+    """The N with the fewest bits, at the errors of all runs. runs_of_count: N, runs."""
     curves = {n: curve(runs) for n, runs in runs_of_count.items()}
     low = max(min(kg for kg, _ in c) for c in curves.values())
     high = min(max(kg for kg, _ in c) for c in curves.values())

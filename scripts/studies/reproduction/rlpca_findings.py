@@ -6,7 +6,7 @@ import rlpca_claims as rlpca
 import rlpca_paths
 
 BITS, FINE_BITS = 12, 16
-COUNTS = (10, 20, 30)  # of clusters
+COUNTS = (10, 20, 30)  # numbers of clusters
 
 
 def _seed_rates(made):

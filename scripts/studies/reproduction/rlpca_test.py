@@ -20,7 +20,7 @@ class Published(unittest.TestCase):
     def test_the_table_is_that_of_the_paper(self):
         self.assertEqual(len(published.TABLE), 9)
         self.assertEqual(len({(r.model, r.clusters, r.components) for r in published.TABLE}), 9)
-        # What its text says: better than CPCA, except on the cow at the lower rates.
+        # Claim of its text: better than CPCA, except on the cow at the lower rates.
         worse = [(r.model.name, r.clusters, r.components) for r in published.TABLE
                  if r.bpvf >= r.cpca[0]]
         self.assertEqual(worse, [("cow", 30, 10), ("cow", 10, 10)])
@@ -35,7 +35,7 @@ class Models(unittest.TestCase):
     def test_models_are_known_by_their_numbers(self):
         self.assertIs(models.model_of(2904, 5804, 204, 1.467), models.COW)
         self.assertIs(models.model_of(3030, 5664, 400, 6.27), models.CHICKEN)
-        self.assertIs(models.model_of(3029, 5664, 400, 6.28), models.CHICKEN)  # as printed once
+        self.assertIs(models.model_of(3029, 5664, 400, 6.28), models.CHICKEN)  # printed once
         self.assertIs(models.model_of(7061, 14118, 201, 1.2), models.DANCE)
         self.assertIs(models.model_of(7061, 14118, 100, 1.2), models.DANCE)
 
@@ -67,10 +67,10 @@ class Claims(unittest.TestCase):
 
     def test_equal_settings(self):
         worse = runs(*self.WORSE)
-        for kgs, words in (((1.0, 0.5, 0.25), "Holds: x (3 of 3; error -50 % in the mean)."),
+        for kgs, words in (((1.0, 0.5, 0.25), "Holds: x (3 of 3; error -50 % on average)."),
                            ((4.0, 2.0, 1.0), "Does not hold: x (0 of 3; error +100 %"),
                            ((1.0, 0.5, 0.6), "Holds mostly: x (2 of 3;"),
-                           ((1.0, 1.0, 0.5), "Holds: x (1 of 1; error -21 % in the mean; 2 more"),
+                           ((1.0, 1.0, 0.5), "Holds: x (1 of 1; error -21 % on average; 2 more"),
                            ((2.0, 1.0, 0.5), "Not tested: x (no comparison is possible; ")):
             better = runs(*((l, bpvf, kg) for (l, bpvf, _), kg in zip(self.WORSE, kgs)))
             self.assertTrue(claims.equal_settings("x", better, worse).startswith(words),

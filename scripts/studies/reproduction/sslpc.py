@@ -67,7 +67,7 @@ class Reproduction(paper.Paper):
         self.targets = (TARGETS_OF_CHICKEN if is_chicken else TARGETS)[::self.step]
         self.flat_bits = (FLAT_BITS_OF_CHICKEN if is_chicken else FLAT_BITS)[::self.step]
         self.lossless = self.known.lossless
-        # Of scalability, and of what is cut from temporal layers.
+        # Targets for scalability, and for cuts of temporal layers.
         self.scalable_targets = tuple(self.lossless * x for x in (20 / 3, 2, 2 / 3))
         self.cut_targets = self.scalable_targets[:0:-1][:3 - self.step]
         self.curves = {}  # method: runs
@@ -142,7 +142,7 @@ class Reproduction(paper.Paper):
         return report.Table(title, head, rows)
 
     def cuts(self):
-        """What each spatial layer group takes of a stream."""
+        """Part of a stream that each spatial layer group takes."""
         settings = self.settings("SSLPC", self.lossless, ["--layer-groups", self.num_layers])
         info = self.bench.info(settings, "--coarse")
         vertices = [mesh["vertices"] for mesh in info["coarse_meshes"]]

@@ -5,7 +5,7 @@ import claims
 import sslpc_published as published
 from bench import FLAT
 
-NEAR = 0.06  # of the published growth: that of its chicken is 32.4 to 41.0 %
+NEAR = 0.06  # share of the published growth, which for its chicken is 32.4 to 41.0 %
 REAL_TIME = 30  # frames a second
 
 
@@ -58,7 +58,7 @@ def real_time(sequence, runs):
 
 
 def headers(made):
-    """What the overhead of spatial layers consists of."""
+    """Parts of the overhead of spatial layers."""
     one, many = (made.bench.info(made.settings("SSLPC", made.lossless, more))
                  for more in ((), ["--layer-groups", made.num_layers]))
     name = "unit headers and CRCs"

@@ -36,7 +36,7 @@ GROWTH = 0.38  # "about 38 %" per layer
 
 
 def decomposition_of(model):
-    """Of a sequence; those that the paper lacks have the settings of its cow."""
+    """Settings of a sequence; sequences that are not in the paper have those of its cow."""
     return CHICKEN if model is models.CHICKEN else COW
 
 

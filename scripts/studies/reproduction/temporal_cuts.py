@@ -1,5 +1,5 @@
-"""Streams with temporal layers: what layers cost, and each stream that is cut from them beside one
-that is made of the same frames alone."""
+"""Streams with temporal layers: the cost of layers, and each stream that is cut from them compared
+with one that is made of the same frames alone."""
 
 import dataclasses
 import json
@@ -13,7 +13,7 @@ from bench import Bench
 PERIOD = 16
 LAYERS = 3
 HEAD = 32  # bytes of a point cache before the frames
-COUNT = 28  # where they tell the number of frames
+COUNT = 28  # offset of the number of frames
 
 
 def depths(num_frames, period):
@@ -57,7 +57,7 @@ class Cut:
     layers: int  # kept
     num_frames: int
     bytes: int
-    kg: float  # of its frames, relative to one mean of them
+    kg: float  # KG error of its frames, relative to one mean of them
     alone: int  # bytes of a stream of the same frames alone, with this error
 
 
@@ -72,7 +72,7 @@ class TemporalCuts:
         return bench.encode(settings, lambda stream, *_: stream.stat().st_size)
 
     def _cut(self, stream, order, layers, frames):
-        """The stream with its lowest temporal layers, beside a stream of those frames alone."""
+        """The stream with its lowest temporal layers, and a stream of those frames alone."""
         mesh, points = self.bench.sequence.mesh, self.bench.sequence.points
         with tempfile.TemporaryDirectory(dir=self.bench.folder) as name:
             folder = pathlib.Path(name)
@@ -118,7 +118,7 @@ def table(cuts, targets):
         rows += [[f"{kg:g}", str(cut.layers), str(cut.num_frames), str(cut.bytes), f"{cut.kg:.4f}",
                   f"these frames alone: {cut.alone}", f"{cut.bytes / cut.alone:.3f}"]
                  for cut in found]
-    title = (f"Temporal layers: dyadic:{PERIOD} in {LAYERS} layers, and what is cut from it, beside "
+    title = (f"Temporal layers: dyadic:{PERIOD} in {LAYERS} layers, and its cuts, compared with "
              "streams made for it (learned weights)")
     return report.Table(title, ["KG, %", "layers", "frames", "bytes", "KG of these frames, %",
                                 "bytes of", "ratio"], rows)

@@ -14,8 +14,8 @@ time says `fixed:` instead: limits of the format, memory, tolerances of rounding
 import dataclasses
 import re
 
-# Sources of the search: those of each kind of GOF (encoder/codec/kinds) among them. What is found by
-# trial elsewhere is marked likewise.
+# Sources of the search: those of each kind of GOF (encoder/codec/kinds) among them. Constants
+# that are found by trial elsewhere have the same marks.
 _SEARCH = re.compile(r"encoder/codec/(?:spans|sequence|kinds)/")
 
 _DECLARATION = re.compile(
@@ -32,14 +32,14 @@ def is_of_search(path):
 
 @dataclasses.dataclass(frozen=True)
 class Constant:
-    path: str         # from the root
+    path: str         # relative to the root
     name: str
     type: str
-    value: str        # as in the source
+    value: str        # text in the source
     tag: str          # tuned, fixed, or empty
     off: str          # empty: there is none
     reason: str
-    span: tuple       # of the declaration in the text
+    span: tuple       # place of the declaration in the text
     indent: str
     storage: str
 

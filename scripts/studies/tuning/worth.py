@@ -1,4 +1,4 @@
-"""What tuned constants are worth: encodings with each of them at other values."""
+"""Worth of tuned constants: encodings with each of them at other values."""
 
 import concurrent.futures
 import dataclasses
@@ -47,7 +47,7 @@ class Case:
 class Result:
     bytes: int
     error: float    # KG, per cent
-    seconds: float  # of the processor
+    seconds: float  # processor time
 
 
 def copy_sources(root, scratch):
@@ -122,7 +122,7 @@ class Encoder:
                                            stderr=stderr, text=True)
             with process.stdout as pipe:
                 output = pipe.read()
-            # The time of this process alone: others run beside it.
+            # The time of this process alone: others run at the same time.
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = os.waitstatus_to_exitcode(status)
             complaint = log.read_text().strip()

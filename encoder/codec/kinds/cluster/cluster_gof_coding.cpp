@@ -23,7 +23,7 @@ constexpr double kMinEnergy = 1.2;
 // multiple of it at the expense of others.
 constexpr std::size_t kShare = 4;
 
-// The largest extent of the bounding box of a frame, in the mean of all frames.
+// Returns the mean over all frames of the largest extent of a frame's bounding box.
 double mean_extent(const SpanFrames& frames) {
   double sum = 0.0;
   for (std::uint32_t f = 0; f < frames.num_frames; ++f) {

@@ -30,7 +30,7 @@ class ClusterGofCoding {
   const SequenceMesh& mesh() const { return mesh_; }
   const EncoderSettings& settings() const { return settings_; }
   const SpanFrames& frames() const { return frames_; }
-  // Clusters of the frames, made as the settings say.
+  // Returns what divides the frames into clusters, as the settings say.
   std::unique_ptr<ClusterMaker> cluster_maker() const;
   Clustering cluster(ClusterMaker& maker, std::uint32_t count) const;
   ClusterGofAnalysis analyse(double step, bool world, const Clustering& clustering) const;

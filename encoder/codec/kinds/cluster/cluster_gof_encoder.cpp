@@ -62,7 +62,7 @@ void choose_seed_predictor(ClusterGof& gof, const SpanFrames& frames, int positi
   gof = std::move(best);
 }
 
-// Clusters and seed tracks, in the order of clause 6.5.2.
+// Sets clusters and seed tracks, in the order of clause 6.5.2.
 void set_clusters(ClusterGof& gof, const Clustering& clustering) {
   gof.cluster_of_vertex = clustering.cluster_of_vertex;
   gof.clusters.resize(clustering.num_clusters());
@@ -179,7 +179,7 @@ QuantisedComponent quantise_component(const ClusterAnalysis& cluster, std::size_
   return q;
 }
 
-// Squared error added by quantising a component, without that of dropping others.
+// Returns the squared error of quantising a component, without that of dropping others.
 double quantisation_error(const QuantisedComponent& q, double energy) {
   const double spatial =
       q.steps.spatial * q.steps.spatial * static_cast<double>(q.spatial.size());

@@ -30,7 +30,7 @@ struct ClusterAnalysisSettings {
 struct ClusterCodingSettings {
   enum class Steps : std::uint8_t {
     kEqualDistortion,  // one step for all values: each adds the same error
-    kRanges,           // as in the paper: 2^-qu and 2^-qc of each cluster's range of values
+    kRanges,           // 2^-qu and 2^-qc of each cluster's range of values, as in the paper
   };
   enum class Allocation : std::uint8_t { kFixed, kVectorBudget, kBitBudget, kSlope };
 

@@ -50,7 +50,7 @@ struct Strip {
     }
     return clustering;
   }
-  // Root mean square over all coordinates and frames.
+  // Returns the RMS error over all coordinates and frames.
   double error_of(const ClusterGof& gof) const {
     const ClusterRecon recon(header, topology, gof);
     std::vector<std::int32_t> positions(3 * std::size_t{header.num_vertices});

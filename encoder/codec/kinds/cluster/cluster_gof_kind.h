@@ -7,12 +7,13 @@
 
 namespace rlpc {
 
-// Cluster GOFs as one of the kinds to compare. Null if the settings exclude them.
+// Returns cluster GOFs as one of the kinds to compare; null if the settings exclude them.
 std::unique_ptr<KindEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
                                                    const EncoderSettings& settings);
 
-// Cluster GOFs for the Main profile if the other kinds miss the target, whatever the preset and
-// the target. Null for the Baseline profile, and if the settings require skinned GOFs.
+// Returns cluster GOFs for the Main profile if the other kinds miss the target, whatever the
+// preset and the target; null for the Baseline profile, and if the settings require skinned
+// GOFs.
 std::unique_ptr<KindEncoder> make_last_resort(const SequenceMesh& mesh,
                                               const EncoderSettings& settings);
 

@@ -19,7 +19,7 @@ namespace {
 // 2, 3, 4, 6, 8, 12 (count_at), so from eight clusters.
 constexpr std::size_t kFirstCount = 5;
 constexpr std::size_t kNumCounts = 13;      // fixed: up to 96
-constexpr std::uint32_t kSeedVertices = 3;  // fixed: of a cluster
+constexpr std::uint32_t kSeedVertices = 3;  // fixed: number per cluster
 
 class ClusterSearch {
  public:
@@ -29,7 +29,7 @@ class ClusterSearch {
   FoundClusters run() {
     const BaselineTools& tools = coding_.settings().baseline;
     const bool is_free = tools.clusters == 0 && tools.frame_mode == FrameMode::kAuto;
-    // Beside skinned GOFs, which are usually better, only the extremes are tried.
+    // Next to skinned GOFs, which are usually better, only the extremes are tried.
     if (is_free && coding_.settings().preset == Preset::kMedium &&
         coding_.settings().profile != Profile::kBaseline) {
       return better_extreme();
@@ -66,7 +66,7 @@ class ClusterSearch {
     return cost(coding_.encode(step_, choice, *maker_));
   }
 
-  // The last number that leaves vertices beside those of seeds.
+  // Returns the last number that leaves vertices besides those of seeds.
   std::size_t last_count() const {
     std::size_t last = 0;
     while (last + 1 < kNumCounts &&
@@ -113,7 +113,7 @@ class ClusterSearch {
     return cost(world) < cost(local) ? world : local;
   }
 
-  // What the variants of the paper's method are tried with.
+  // Returns the choices that the variants of the paper's method are tried with.
   std::vector<ClusterChoice> choices_of_paper() {
     const BaselineTools& tools = coding_.settings().baseline;
     if (tools.clusters == 0 || tools.frame_mode != FrameMode::kAuto) return {choose()};
@@ -133,9 +133,9 @@ FoundClusters search_clusters(const ClusterGofCoding& coding, double step) {
 
 std::uint32_t usual_clusters(std::uint32_t num_vertices) {
   // tuned: The number of clusters has this many vertices to each, where it is not searched:
-  // with the fast preset, and beside skinned GOFs.
+  // with the fast preset, and next to skinned GOFs.
   constexpr std::uint32_t kVerticesOfCluster = 56;
-  constexpr std::uint32_t kFewestClusters = 2;  // fixed: of several
+  constexpr std::uint32_t kFewestClusters = 2;  // fixed: the fewest that are several
   return std::clamp(num_vertices / kVerticesOfCluster, kFewestClusters,
                     count_at(kNumCounts - 1));
 }

@@ -14,11 +14,11 @@ struct FoundClusters {
   std::optional<ClusterGofAnalysis> analysis = {};  // for the step, if the search made one
 };
 
-// The clusters with the lowest cost at a step (grid steps), among those that the settings
-// allow.
+// Returns the clusters with the lowest cost at a step (grid steps), among those that the
+// settings allow.
 FoundClusters search_clusters(const ClusterGofCoding& coding, double step);
 
-// A number of clusters that suits many GOFs, for where none is searched.
+// Returns a number of clusters that suits many GOFs, for use without a search.
 std::uint32_t usual_clusters(std::uint32_t num_vertices);
 
 }  // namespace rlpc

@@ -32,7 +32,7 @@ MotionClusters::MotionClusters(const SpanFrames& frames, std::span<const Triangl
   }
 }
 
-// False once every vertex is a seed or was skipped.
+// Adds a seed. Returns false once every vertex is a seed or was skipped.
 bool MotionClusters::add_seed() {
   for (;;) {
     const auto farthest = std::max_element(distance_.begin(), distance_.end());

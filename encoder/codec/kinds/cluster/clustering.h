@@ -15,7 +15,7 @@
 namespace rlpc {
 
 struct Clustering {
-  // Of the first clusters; those after them have no LCF. There is at least one cluster.
+  // Seeds of the first clusters; later clusters have no LCF. There is at least one cluster.
   std::vector<Seed> seeds;
   std::vector<std::uint16_t> cluster_of_vertex;  // [num_vertices]; also set for seed vertices
   std::size_t without_lcf = 0;                   // clusters that have no seed
@@ -31,9 +31,9 @@ std::vector<std::uint32_t> vertices_of(const Clustering& clustering, std::size_t
 class ClusterMaker {
  public:
   virtual ~ClusterMaker() = default;
-  // At most `count` clusters, with seeds that are triangles.
+  // Returns at most `count` clusters, with seeds that are triangles.
   virtual Clustering clusters(std::uint32_t count) = 0;
-  // As clusters(), with seeds of distant vertices of each cluster. Noise rotates these frames
+  // Like clusters(), with seeds of distant vertices of each cluster. Noise rotates these frames
   // less, so seeds can be coded more coarsely.
   virtual Clustering spread_clusters(std::uint32_t count) = 0;
 };
@@ -56,7 +56,7 @@ class MotionClusters : public ClusterMaker {
   // moves least over the GOF; ties go to the lower index. There may be fewer seeds than
   // `count`, even none.
   Clustering clusters(std::uint32_t count) override;
-  // As clusters(), then replaces each seed triangle by three distant vertices of its cluster
+  // Calls clusters(), then replaces each seed triangle by three distant vertices of its cluster
   // and assigns the vertices again.
   Clustering spread_clusters(std::uint32_t count) override;
 

@@ -21,7 +21,7 @@ struct Scene {
   SpanFrames frames;
   std::vector<Triangle> triangles;
 
-  // All frames must have the same number of vertices.
+  // Adds a frame; all frames must have the same number of vertices.
   void add_frame(const std::vector<Point>& points) {
     frames.num_vertices = static_cast<std::uint32_t>(points.size());
     ++frames.num_frames;

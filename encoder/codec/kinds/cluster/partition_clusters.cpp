@@ -51,7 +51,7 @@ std::optional<Seed> PartitionClusters::seed_of(const std::vector<std::uint32_t>&
     std::optional<Seed> best;
     double quality = 0.0;
     for (std::size_t i = 0; i < central.size(); ++i) {
-      if (best && i % kCentral == 0) break;  // those farther from the centre are not needed
+      if (best && i % kCentral == 0) break;  // vertices farther from the centre are not needed
       const auto seed = choice_.triangle_at(central[i], suits);
       if (!seed) continue;
       const double of_seed = choice_.quality(*seed, quality);

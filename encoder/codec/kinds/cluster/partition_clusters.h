@@ -36,7 +36,7 @@ class PartitionClusters : public ClusterMaker {
   const SpanFrames& frames_;
   std::span<const Triangle> triangles_;
   SeedChoice choice_;
-  std::map<std::uint32_t, Clustering> known_;  // by count
+  std::map<std::uint32_t, Clustering> known_;  // [count]
 };
 
 }  // namespace rlpc

@@ -13,7 +13,7 @@
 namespace rlpc {
 namespace {
 
-// The narrowest two's complement width, in bits, that holds every value.
+// Returns the narrowest two's complement width, in bits, that holds every value.
 int signed_width(const std::vector<std::int32_t>& values) {
   int bits = 1;
   for (const std::int32_t v : values) {
@@ -49,10 +49,10 @@ std::vector<std::int32_t> spatial_residuals(const std::vector<std::int32_t>& val
   return residuals;
 }
 
-// floor(eighths / 8)
+// Returns floor(eighths / 8).
 int floor_octave(int eighths) { return (eighths + 8000) / 8 - 1000; }
 
-// Exponent of a spatial factor's normalisation (8.5.2).
+// Returns the exponent of a spatial factor's normalisation (8.5.2).
 int norm_shift(const QuantisedComponent& c) {
   const int bits = signed_width(c.spatial);
   return spatial_factor_bits(bits) - bits;
@@ -86,7 +86,7 @@ std::vector<std::int32_t> quantise(const std::vector<double>& values, double ste
 }
 
 double estimate_bits(const std::vector<std::int32_t>& residuals) {
-  constexpr double kZeroBits = 0.02;  // fixed: of a value where all are zero
+  constexpr double kZeroBits = 0.02;  // fixed: bits of a value if all are zero
   if (residuals.empty()) return 0.0;
   std::uint64_t sum = 0;
   for (const std::int32_t r : residuals) sum += magnitude_of(r);
@@ -116,7 +116,7 @@ void choose_predictors(QuantisedComponent& component, const SpatialPrediction& p
     best_spatial = bits;
     component.spatial_predictor = predictor;
   }
-  constexpr double kHeaderBits = 8.0;  // fixed: of a component
+  constexpr double kHeaderBits = 8.0;  // fixed: bits of a component
   component.bits = best_temporal + best_spatial + kHeaderBits;
 }
 

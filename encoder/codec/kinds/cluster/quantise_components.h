@@ -19,7 +19,8 @@ struct StepPair {
   int product_eighths = 0;
 };
 
-// The nearest legal pair. Keeps the temporal step; scales the spatial step by at most 2^(1/16).
+// Returns the nearest legal pair: keeps the temporal step, scales the spatial one by at most
+// 2^(1/16).
 StepPair make_steps(double spatial_step, double temporal_step);
 
 // Quantised values of one component, with the best predictors.
@@ -39,10 +40,10 @@ std::vector<std::int32_t> quantise(const std::vector<double>& values, double ste
 // Chooses the predictors of quantised values and estimates their bits.
 void choose_predictors(QuantisedComponent& component, const SpatialPrediction& prediction);
 
-// The number of fraction bits at which all temporal factors are precise enough.
+// Returns the number of fraction bits at which all temporal factors are precise enough.
 int choose_fraction_bits(const std::vector<std::vector<QuantisedComponent>>& clusters);
 
-// The component as it is written. fraction_bits: from choose_fraction_bits().
+// Returns the component as it is written. fraction_bits: from choose_fraction_bits().
 Component make_component(const QuantisedComponent& component,
                          const SpatialPrediction& prediction, int fraction_bits);
 

@@ -189,7 +189,7 @@ QuantisedComponent random_component(std::mt19937& random, std::size_t num_frames
   const int spatial_bits = 1 + static_cast<int>(random() % 16);
   for (std::size_t f = 0; f < num_frames; ++f) c.temporal.push_back(value(temporal_bits));
   for (std::size_t i = 0; i < 3 * num_vertices; ++i) c.spatial.push_back(value(spatial_bits));
-  // A product of steps small enough for positions of 20 bits.
+  // The product of steps is small enough for positions of 20 bits.
   const double range = std::exp2(static_cast<double>(random() % 12));
   c.steps =
       make_steps(range / std::exp2(spatial_bits) * std::exp2(6),

@@ -10,7 +10,7 @@ struct HullStep {
   double slope = 0.0;  // distortion saved per unit of rate; 0: the hull ends here
 };
 
-// The next point on the lower convex hull after `from`.
+// Returns the next point on the lower convex hull after `from`.
 HullStep next_on_hull(const RdCurve& curve, std::size_t from) {
   HullStep best{from, 0.0};
   for (std::size_t l = from + 1; l < curve.size(); ++l) {

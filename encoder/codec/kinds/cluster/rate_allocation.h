@@ -15,12 +15,12 @@ struct RdPoint {
 // Point l is the result of coding l components; every curve has at least point 0.
 using RdCurve = std::vector<RdPoint>;
 
-// The number of components of each cluster. Advances along the lower convex hulls, steepest
-// slope first, as long as the total rate stays within total_rate.
+// Returns the number of components of each cluster. Advances along the lower convex hulls,
+// steepest slope first, as long as the total rate stays within total_rate.
 std::vector<std::size_t> allocate_within(const std::vector<RdCurve>& curves, double total_rate);
 
-// The number of components with the lowest Lagrangian cost. Advances along the lower convex
-// hull while a unit of rate lowers the distortion by more than lambda.
+// Returns the number of components with the lowest Lagrangian cost. Advances along the lower
+// convex hull while a unit of rate lowers the distortion by more than lambda.
 std::size_t allocate_by_slope(const RdCurve& curve, double lambda);
 
 }  // namespace rlpc

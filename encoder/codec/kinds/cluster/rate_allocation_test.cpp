@@ -22,7 +22,7 @@ RdPoint total(const std::vector<RdCurve>& curves, const Choice& choice) {
   return sum;
 }
 
-// All combinations of points, by enumeration.
+// Returns all combinations of points, by enumeration.
 std::vector<Choice> all_choices(const std::vector<RdCurve>& curves) {
   std::vector<Choice> all{Choice(curves.size(), 0)};
   for (Choice choice = all.front();;) {
@@ -33,7 +33,7 @@ std::vector<Choice> all_choices(const std::vector<RdCurve>& curves) {
   }
 }
 
-// The lowest distortion of all choices within a rate.
+// Returns the lowest distortion of all choices within a rate.
 double least_distortion(const std::vector<RdCurve>& curves, double rate) {
   double least = std::numeric_limits<double>::infinity();
   for (const Choice& choice : all_choices(curves)) {
@@ -43,8 +43,8 @@ double least_distortion(const std::vector<RdCurve>& curves, double rate) {
   return least;
 }
 
-// Curves with integer values, so that sums are exact. Convex: each step saves less than the one
-// before.
+// Returns convex curves, in which each step saves less than the one before, with integer
+// values, so that sums are exact.
 std::vector<RdCurve> random_curves(std::mt19937& random, bool unit_rates, bool convex) {
   std::vector<RdCurve> curves(1 + random() % 4);
   for (RdCurve& curve : curves) {

@@ -9,9 +9,9 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kNeighbours = 6;  // fixed: of a vertex of a regular mesh
+constexpr std::size_t kNeighbours = 6;  // fixed: neighbours in a regular mesh
 
-// Indices of the triangles at each vertex.
+// Returns the indices of the triangles at each vertex.
 std::vector<std::vector<std::uint32_t>> incident_triangles(
     std::uint32_t num_vertices, std::span<const Triangle> triangles) {
   std::vector<std::vector<std::uint32_t>> incident(num_vertices);
@@ -21,7 +21,7 @@ std::vector<std::vector<std::uint32_t>> incident_triangles(
   return incident;
 }
 
-// The points nearest to vertex v in frame 0, without those that coincide with it.
+// Returns the points nearest to vertex v in frame 0, without those that coincide with it.
 std::vector<std::uint32_t> nearest_points(const SpanFrames& frames, std::uint32_t v) {
   std::vector<std::pair<double, std::uint32_t>> others;
   for (std::uint32_t u = 0; u < frames.num_vertices; ++u) {
@@ -60,7 +60,7 @@ SeedChoice::SeedChoice(const SpanFrames& frames, std::span<const Triangle> trian
       rules_(rules),
       incident_(incident_triangles(frames.num_vertices, triangles)) {}
 
-// The candidate seed triangles at a vertex.
+// Returns the candidate seed triangles at a vertex.
 std::vector<Triangle> SeedChoice::triangles_at(std::uint32_t v) const {
   std::vector<Triangle> found;
   for (const std::uint32_t t : incident_[v]) found.push_back(triangles_[t]);

@@ -16,14 +16,14 @@ namespace rlpc {
 
 using Seed = std::array<std::uint32_t, 3>;  // p1, p2, p3 of a seed triangle
 
-// The squared distance of two positions.
+// Returns the squared distance of two positions.
 inline double distance2(const double* a, const double* b) {
   double sum = 0.0;
   for (std::size_t c = 0; c < 3; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
   return sum;
 }
 
-// Which seeds SeedChoice makes, and how it measures motion.
+// Kind of seeds that SeedChoice makes, and measure of motion.
 struct SeedRules {
   bool first = false;  // the first triangle at a vertex as it is, instead of the best
   DistanceSum sum = DistanceSum::kSquared;
@@ -37,24 +37,25 @@ class SeedChoice {
   SeedChoice(const SpanFrames& frames, std::span<const Triangle> triangles, int position_bits,
              const SeedRules& rules = {});
 
-  // The best triangle at a vertex that is degenerate in no frame, turned so that noise rotates
-  // its frame least; in a point cloud, of the vertex and two of its nearest points. With
-  // SeedRules::first, the first that is degenerate in no frame. suits: only such triangles;
-  // none: all.
+  // Returns the best triangle at a vertex that is degenerate in no frame, turned so that noise
+  // rotates its frame least; in a point cloud, a triangle of the vertex and two of its nearest
+  // points. With SeedRules::first: the first that is degenerate in no frame. suits: the
+  // triangles allowed; empty: all.
   std::optional<Seed> triangle_at(std::uint32_t v, const Suits& suits = {}) const;
-  // How stable a local coordinate frame on the seed is: the minimum over the GOF of the square
-  // of its doubled area; 0 if it is degenerate in any frame. Stops early once the minimum is at
-  // most `threshold`.
+  // Returns the stability of a local coordinate frame on the seed: the minimum over the GOF of
+  // the square of its doubled area; 0 if it is degenerate in any frame. Stops early once the
+  // minimum is at most `threshold`.
   double quality(const Seed& seed, double threshold = 0.0) const;
-  // Total motion of every vertex between adjacent frames, in the coordinates of a seed (3.2).
+  // Returns the total motion of every vertex between frames, in the coordinates of a seed
+  // (3.2).
   std::vector<double> motion_in(const Seed& seed) const;
-  // Three distant ones of the vertices of a cluster, from the half that moves least in the
-  // coordinates of its seed; that seed if they give no stable frame.
+  // Returns three distant vertices of a cluster, from the half that moves least in the
+  // coordinates of its seed; that seed if they have no stable frame.
   //
   //   motion  motion_in(seed)
   Seed spread(const Seed& seed, std::vector<std::uint32_t> vertices,
               std::span<const double> motion) const;
-  // Vertices of a mesh without a triangle have no seed.
+  // Whether a vertex of a mesh has no triangle, and therefore no seed.
   bool is_isolated(std::uint32_t v) const {
     return incident_[v].empty() && !triangles_.empty();
   }

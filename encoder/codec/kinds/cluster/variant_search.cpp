@@ -11,7 +11,7 @@
 namespace rlpc {
 namespace {
 
-// The variants that the settings leave open, the usual one first.
+// Returns the variants that the settings leave open, the usual one first.
 std::vector<BaselineTools> variants_of(const BaselineTools& tools) {
   const bool by_seeds = tools.partition == PartitionMethod::kSeeds;
   std::vector<SeedMode> seeds{tools.seed_mode};
@@ -35,7 +35,7 @@ std::vector<BaselineTools> variants_of(const BaselineTools& tools) {
   return variants;
 }
 
-// The paper as it reads: one of the incident triangles, and distances.
+// Whether tools are the paper's literal method: one of the incident triangles, and distances.
 bool is_literal(const BaselineTools& tools) {
   return tools.seed_mode == SeedMode::kFirst && tools.motion == MotionMeasure::kPlain;
 }
@@ -58,8 +58,8 @@ Trial encode_with(const ClusterGofCoding& coding, const EncoderSettings& setting
   return trial;
 }
 
-// The squared error that a bit is worth: what the last component of each cluster saves, divided
-// by what it takes. 0 if it saves nothing.
+// Returns the squared error that a bit is worth: what the last component of each cluster saves,
+// divided by its bits. 0 if it saves nothing.
 double worth_of_bit(const ClusterGofCoding& coding, EncoderSettings settings, double step,
                     const ClusterChoice& choice, const Trial& trial) {
   const bool is_least = settings.components == 1;
@@ -81,7 +81,7 @@ FoundVariant search_variants(const ClusterGofCoding& coding, double step,
                              std::span<const ClusterChoice> choices) {
   std::vector<Trial> trials;
   double most = std::numeric_limits<double>::infinity();
-  double worth = 0.0;  // of a bit
+  double worth = 0.0;  // squared error per bit
   for (std::size_t i = 0; i < choices.size(); ++i) {
     for (const BaselineTools& tools : variants_of(coding.settings().baseline)) {
       EncoderSettings settings = coding.settings();

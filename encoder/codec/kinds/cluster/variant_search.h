@@ -20,9 +20,9 @@ bool has_variants(const EncoderSettings& settings);
 
 // Encodes every variant that the settings leave open, with each of the choices, and returns the
 // one of least cost: squared error and bits, weighted as the last component of each cluster
-// trades them. Its error is at most that of the first choice with the paper as it reads: the
-// first triangle, distances that are not squared. Ties go to the earlier one. choices: at least
-// one.
+// trades them. Its error is at most that of the first choice with the paper's literal method:
+// the first triangle, and distances that are not squared. Ties go to the earlier one. choices:
+// at least one.
 FoundVariant search_variants(const ClusterGofCoding& coding, double step,
                              std::span<const ClusterChoice> choices);
 

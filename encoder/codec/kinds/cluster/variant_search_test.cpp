@@ -13,7 +13,7 @@
 namespace rlpc {
 namespace {
 
-constexpr double kStep = 16.0;  // without effect, as the quantisers are given
+constexpr double kStep = 16.0;  // has no effect, as the quantisers are given
 
 // Squares of different sizes in a sheet that waves, with a jolt, in grid steps.
 struct Sheet {

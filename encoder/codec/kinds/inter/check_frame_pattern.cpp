@@ -8,7 +8,7 @@ namespace {
 
 using std::to_string;
 
-// Depths of the frames of a period as its entries come; kMaxPatternDepths: not yet.
+// Checks entries in order. Depths of the frames of a period; kMaxPatternDepths: not yet known.
 class ExplicitCheck {
  public:
   explicit ExplicitCheck(std::size_t period) : depth_(period + 1, kMaxPatternDepths) {

@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-// What is wrong with the pattern; none: it is legal.
+// Returns what is wrong with the pattern; none: it is legal.
 std::optional<std::string> error_of_pattern(const FramePattern& pattern);
 
 }  // namespace rlpc

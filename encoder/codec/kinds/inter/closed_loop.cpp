@@ -106,7 +106,7 @@ void ClosedLoop::end_unit(std::uint32_t number, std::vector<EncodedSpan::Unit>& 
       writer_.unit_bytes(layer) < limits_.bytes) {
     return;
   }
-  // Those of lower temporal layers, which its frames may need, end before it.
+  // Units of lower temporal layers, which its frames may need, end before it.
   const std::uint32_t end = is_last ? settings_.pattern.temporal_layers : layer + 1;
   for (std::uint32_t t = 0; t < end; ++t) {
     if (writer_.unit_frames(t) == 0) continue;

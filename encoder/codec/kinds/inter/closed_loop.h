@@ -18,45 +18,45 @@
 
 namespace rlpc {
 
-// A frame unit ends once it has so many frames, or so many bytes; after the first frame of a
-// GOF; and in an open-ended stream, before a frame of another temporal layer.
+// Size at which a frame unit ends: it has so many frames or bytes. It also ends after the first
+// frame of a GOF and, in an open-ended stream, before a frame of another temporal layer.
 struct UnitLimits {
   std::uint32_t frames = 1;
   std::size_t bytes = 0;
 };
 
-// Codes one frame after the other. Memory is that of a decoder, and the predictions of two
+// Codes one frame after the other. Needs the memory of a decoder, and of the predictions of two
 // layers. Vertices of a layer are predicted, and adapt, on several threads.
 class ClosedLoop {
  public:
-  // The mesh must have layers; mesh and settings must outlive it. num_frames: of the GOF.
-  // to_nearest: residuals are rounded to nearest, not chosen by rate and distortion.
+  // The mesh must have layers; mesh and settings must outlive it. num_frames: length of the
+  // GOF. to_nearest: residuals are rounded to nearest, not chosen by rate and distortion.
   ClosedLoop(const OrderedMesh& mesh, const InterSettings& settings,
              const SequenceHeader& header, std::uint32_t num_frames,
              const UnitLimits& limits = {}, bool to_nearest = false);
 
-  // The frame that comes next in coding order, and the one so many places before it.
+  // Return the frame that comes next in coding order, and the one so many places before it.
   const FramePlace& next_place() const { return order_[recon_.place()]; }
   std::uint32_t frame_before(std::uint32_t distance) const {
     return order_[recon_.place() - distance].frame;
   }
-  // Codes it; xyz [num_vertices][3], in grid units, unrounded. Returns the frame units that
-  // end with it, and writes its positions as a decoder outputs them. coded: unless null, set to
-  // the frame as a parser would return it. distance: unless 0, it is predicted from the frame
-  // so many places before, at most max_earlier_distance, and of a temporal layer that is not
-  // higher.
+  // Codes the next frame; xyz [num_vertices][3], in grid units, unrounded. Returns the frame
+  // units that end with it, and writes its positions as a decoder outputs them. coded: unless
+  // null, set to the frame as a parser would return it. distance: unless 0, the frame is
+  // predicted from the one so many places before, at most max_earlier_distance, whose temporal
+  // layer must not be higher.
   std::vector<EncodedSpan::Unit> code(std::span<const double> xyz,
                                       std::span<std::int32_t> positions,
                                       InterFrame* coded = nullptr, std::uint32_t distance = 0);
-  // In place of that, the first frame in an order of its own, which the settings must have.
+  // Codes the first frame in an order of its own, which the settings must have.
   std::vector<EncodedSpan::Unit> code_in_order(const RestEncoding& first,
                                                std::span<std::int32_t> positions,
                                                InterFrame* coded = nullptr);
-  // Or repeats such a frame.
+  // Repeats the frame so many places before, under the same conditions.
   std::vector<EncodedSpan::Unit> repeat(std::uint32_t distance,
                                         std::span<std::int32_t> positions,
                                         InterFrame* coded = nullptr);
-  // Of the frame units that have not ended.
+  // Returns the bytes of the frame units that have not ended.
   std::size_t unit_bytes() const;
 
  private:
@@ -70,8 +70,7 @@ class ClosedLoop {
   void predict(Layer& layer, std::uint32_t index);
   void choose(Layer& layer, std::span<const double> xyz, InterFrame* coded);
   void adapt(Layer& layer, std::size_t first, std::size_t end);
-  // After a frame, or with several layer groups, after each of them: ends the unit if it has
-  // to.
+  // Ends the unit if necessary; called after a frame, or after each of several layer groups.
   void end_unit(std::uint32_t number, std::vector<EncodedSpan::Unit>& units);
 
   const OrderedMesh& mesh_;
@@ -82,9 +81,9 @@ class ClosedLoop {
   FrameOrder order_;
   InterRecon recon_;
   FrameUnitWriter writer_;
-  std::optional<PatchSearch> patch_search_;  // if there are patches
-  FramePatches patches_;                     // of the frame
-  Layer layers_[2];  // of which one adapts while residuals of the other are chosen
+  std::optional<PatchSearch> patch_search_;  // none without patches
+  FramePatches patches_;                     // patches of the frame
+  Layer layers_[2];  // one adapts while residuals of the other are chosen
 };
 
 }  // namespace rlpc

@@ -18,9 +18,9 @@ namespace {
 constexpr std::size_t kSample = 256;           // fixed: time; coordinates
 constexpr std::uint32_t kMostSearched = 1024;  // fixed: time; places
 
-// FNV-1a of the coordinates on the grid.
+// Returns FNV-1a of the coordinates on the grid.
 std::uint64_t hash_on_grid(std::span<const double> xyz) {
-  constexpr std::uint64_t kPrime = 0x100000001b3;  // fixed: of FNV
+  constexpr std::uint64_t kPrime = 0x100000001b3;  // fixed: FNV
   std::uint64_t hash = 0xcbf29ce484222325;
   for (const double value : xyz) {
     hash =
@@ -54,7 +54,7 @@ class EarlierSearch {
 
   std::vector<EarlierFrame> run() {
     std::vector<EarlierFrame> earlier(order_.num_frames());
-    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> places;  // by hash
+    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> places;  // [hash]
     for (std::uint32_t place = 0; place < order_.num_frames(); ++place) {
       auto& alike = places[hash_on_grid(frame(order_[place].frame))];
       if (const auto equal = last_equal(place, alike)) {
@@ -89,7 +89,8 @@ class EarlierSearch {
     return *found;
   }
 
-  // Its distance; 0: none is nearer than what the pattern predicts from.
+  // Returns the distance of the nearest frame; 0: none is nearer than the reference of the
+  // pattern.
   std::uint32_t nearest(std::uint32_t place) const {
     const FramePlace& own = order_[place];
     const auto xyz = sample(own.frame);
@@ -116,7 +117,7 @@ class EarlierSearch {
   std::vector<double> samples_;  // [num_frames][sampled_]
 };
 
-// Bits per value of a two-sided geometric distribution of this mean magnitude.
+// Returns the bits per value of a two-sided geometric distribution with this mean magnitude.
 double entropy(double mean) {
   if (mean <= 0.0) return 0.0;
   const double ratio = (std::sqrt(1.0 + mean * mean) - 1.0) / mean;

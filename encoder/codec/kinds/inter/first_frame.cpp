@@ -29,7 +29,7 @@ std::vector<std::int32_t> points(std::span<const double> xyz, int position_bits,
   return points;
 }
 
-// D + lambda R, in squared grid units; bits alone if positions are exact.
+// Returns D + lambda R, in squared grid units; only bits if positions are exact.
 double cost_of(std::span<const double> xyz, std::span<const std::int32_t> positions,
                const InterSettings& settings, double bits) {
   if (settings.exact_flag) return bits;

@@ -1,4 +1,4 @@
-// The first frame of an inter GOF, which is predicted from no other.
+// Codes the first frame of an inter GOF, which is predicted from no other frame.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,8 @@
 
 namespace rlpc {
 
-// The frame in an order of its own (8.18), at the step of depth 0; null if its layers cost
-// less, if several layer groups need them, or if the order is not wanted. xyz
+// Codes the frame in an order of its own (8.18), at the step of depth 0; null if coding it in
+// layers costs less or several layer groups need it, or if the settings exclude the order. xyz
 // [num_vertices][3], in grid units. Takes some 10 us per vertex, a third of that with the fast
 // preset.
 std::shared_ptr<const RestEncoding> code_first_frame(const OrderedMesh& mesh,

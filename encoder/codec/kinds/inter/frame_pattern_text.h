@@ -1,4 +1,4 @@
-// --frame-pattern of rlpcenc.
+// Reads and writes the argument of --frame-pattern of rlpcenc.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,10 @@
 
 namespace rlpc {
 
-// "previous", "first", "dyadic:16", or entries such as "2<0,1<0+2@1", not checked otherwise.
-// None: it is none of these.
+// Reads "previous", "first", "dyadic:16", or entries such as "2<0,1<0+2@1", whose numbers are
+// not checked. None: it is none of these.
 std::optional<FramePattern> parse_frame_pattern_text(std::string_view text);
-// The reverse.
+// Returns the text of a pattern.
 std::string frame_pattern_text(const FramePattern& pattern);
 
 }  // namespace rlpc

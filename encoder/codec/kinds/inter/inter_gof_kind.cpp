@@ -19,11 +19,11 @@
 namespace rlpc {
 namespace {
 
-// tuned (off: 1): inter GOFs are tried where trajectories number at least this fraction of
+// tuned (off: 1): Inter GOFs are tried where trajectories number at least this fraction of
 // their maximum. Below, trajectories of all frames are the better basis.
 constexpr double kManyTrajectories = 0.3;
 
-// fixed: A unit costs some 13 bytes beside its residuals, 0.3 % of this.
+// fixed: A unit costs some 13 bytes besides its residuals, 0.3 % of this.
 constexpr std::size_t kUnitBytes = 4096;
 
 UnitLimits unit_limits(const EncoderSettings& settings) {
@@ -32,7 +32,7 @@ UnitLimits unit_limits(const EncoderSettings& settings) {
   return frames ? UnitLimits{*frames, kAny} : UnitLimits{kAny, kUnitBytes};
 }
 
-// What is chosen at a step stands for all within kAnalysisServes.
+// Choices at a step hold for all steps within kAnalysisServes.
 class InterSpanCoder : public SpanCoder {
  public:
   InterSpanCoder(const SequenceMesh& mesh, const OrderedMesh& layers,
@@ -52,10 +52,10 @@ class InterSpanCoder : public SpanCoder {
   const PatchOfVertex& patches(std::uint32_t count);
   std::shared_ptr<const RestEncoding> first_frame(const InterSettings& chosen);
 
-  std::vector<InterChoice> choices_;                // that are still to be compared
-  std::map<std::uint32_t, PatchOfVertex> patches_;  // by their number
-  double chosen_at_ = 0.0;                          // the step that choices were made at
-  // By the step of depth 0, for one call of encode().
+  std::vector<InterChoice> choices_;                // still to be compared
+  std::map<std::uint32_t, PatchOfVertex> patches_;  // [number of patches]
+  double chosen_at_ = 0.0;                          // step at which choices were made
+  // [step of depth 0], for one call of encode().
   std::map<std::uint32_t, std::shared_ptr<const RestEncoding>> first_frames_;
 };
 
@@ -77,7 +77,7 @@ EncodedSpan InterSpanCoder::encode(double step, double /*analysis_step*/) {
   return encoded;
 }
 
-// First the number of patches; patterns are then compared with these.
+// Chooses the number of patches first; patterns are then compared with it.
 void InterSpanCoder::choose(const StartTrial& start) {
   const bool is_open_ended = mesh_.header.open_end_flag;
   const auto patterns = patterns_of(settings_, is_open_ended, frames_.num_frames);

@@ -7,7 +7,7 @@
 
 namespace rlpc {
 
-// Null below the High profile, or if the settings exclude inter GOFs.
+// Returns null below the High profile, or if the settings exclude inter GOFs.
 std::unique_ptr<KindEncoder> make_inter_gof_kind(const SequenceMesh& mesh,
                                                  const EncoderSettings& settings);
 

@@ -13,7 +13,7 @@ namespace {
 // The geometry weights, 8.11, which learned weights start from.
 // tuned (off: 0): Binary logarithm of their damping.
 constexpr int kFrameDamping = 6;
-// tuned (off: 0): The weight of near vertices, 1/16. Learned weights hardly depend on it;
+// tuned (off: 0): The weight of near vertices, 1/16. Learned weights barely depend on it;
 // without learning, frames take 1 to 7 % more bytes if it is 0.
 constexpr int kNearWeight = 3;
 // tuned (off: 0): How much the weights of near vertices change, 1/16.
@@ -26,7 +26,7 @@ constexpr int kPrime = 6;
 // frames are no references, so that their errors stay with them.
 constexpr double kStepOfDepth = 1.2;
 
-// The root mean square of the steps of a period, in steps of depth 0.
+// Returns the root mean square of the steps of a period, in steps of depth 0.
 double mean_step(const FramePattern& pattern) {
   const FrameOrder order(pattern, pattern.period() + 1);
   double sum = 0.0;

@@ -13,17 +13,17 @@
 
 namespace rlpc {
 
-// step: quantiser step, in grid steps; not used if the target is lossless. Of a pattern with
-// several depths, the root mean square of theirs, so that the error, and what a bit is worth,
+// step: quantiser step, in grid steps; not used if the target is lossless. For a pattern with
+// several depths, it is the root mean square of their steps, so that error and worth of a bit
 // are about those of other patterns.
 InterSettings choose_frame_settings(const SequenceHeader& header,
                                     const EncoderSettings& settings, const OrderedMesh& layers,
                                     const FramePattern& pattern, double step);
 
-// The patch of each vertex, for at most so many patches; empty if that is 0. Takes up to some
-// seconds for 10,000 vertices.
+// Returns the patch of each vertex, for at most `count` patches; empty if that is 0. Takes up
+// to some seconds for 10,000 vertices.
 //
-//   triangles  of the mesh whose vertices are in the order of the frames
+//   triangles  of a mesh with vertices in the order of the frames
 PatchOfVertex divide_into_patches(const SequenceHeader& header, const EncoderSettings& settings,
                                   const SpanFrames& frames, std::span<const Triangle> triangles,
                                   std::uint32_t count);

@@ -38,7 +38,7 @@ TEST(InterSettings, OtherWeightsDependOnTheFirstFrame) {
   }
 }
 
-// Of a period of four: a frame each of depths 0 and 1, and two of depth 2.
+// A period of four has a frame each of depths 0 and 1, and two of depth 2.
 TEST(InterSettings, StepsOfDepthsHaveTheMeanSquareOfTheStep) {
   const auto steps =
       settings_with(InterWeights::kLearned, {FramePattern::kDyadic, 2, {}, 1}).step;

@@ -13,7 +13,7 @@
 namespace rlpc {
 namespace {
 
-// coded: in coding order. Frames of higher temporal layers are absent.
+// Decodes without frames of higher temporal layers. coded: in coding order.
 DecodeFrame decode_cut(const OrderedMesh& mesh, const InterSettings& s,
                        const std::vector<InterFrame>& coded, int position_bits,
                        std::uint32_t temporal_layers) {
@@ -29,7 +29,7 @@ DecodeFrame decode_cut(const OrderedMesh& mesh, const InterSettings& s,
   return decoded.decoder();
 }
 
-// earlier_frames() of a GOF, as far as its level allows.
+// Returns earlier_frames() of a GOF, as far as its level allows.
 std::vector<EarlierFrame> earlier_of(const SequenceHeader& header, const SpanFrames& frames,
                                      const FramePattern& pattern) {
   const std::size_t values = 3 * std::size_t{frames.num_vertices};
@@ -114,8 +114,8 @@ void InterTrial::code_to(std::uint32_t count) {
   }
 }
 
-// From how many places before the next frame is predicted, in place of what its pattern says:
-// if both what is expected of that, and what the last frame took, cost more; else 0.
+// Returns the distance to the frame that predicts the next one instead of its references, if
+// both their expected cost and the cost of the last frame are higher; else 0.
 std::uint32_t InterTrial::reference_distance(const FramePlace& place) const {
   const std::uint32_t distance = earlier_[num_coded_].distance;
   if (distance == 0) return 0;

@@ -34,9 +34,9 @@ class DecodedSpan {
 
 class InterTrial {
  public:
-  // The mesh must have layers. Keeps references to mesh, header and frames. Frames that repeat
-  // earlier ones on the grid are not coded again; those that are nearly equal to one are
-  // predicted from it if that is cheaper. choice: what the settings were made for. first:
+  // The mesh must have layers. Keeps references to mesh, header and frames. Frames that equal
+  // earlier ones on the grid are not coded again; frames that nearly equal one are predicted
+  // from it if that is cheaper. choice: the choice that the settings were made for. first:
   // unless null, the first frame in an order of its own.
   InterTrial(const OrderedMesh& mesh, const SequenceHeader& header, const SpanFrames& frames,
              const InterSettings& settings, const UnitLimits& limits, const InterChoice& choice,
@@ -47,12 +47,12 @@ class InterTrial {
   const InterChoice& choice() const { return choice_; }
   // Codes frames until the first `count` in coding order are coded.
   void code_to(std::uint32_t count);
-  // Of the whole GOF, as the frames coded so far make it likely: bits at equal error, or bits
-  // if it is lossless. At least two frames must be coded, unless there is only one.
+  // Estimates the cost of the whole GOF from the frames coded so far: bits at equal error, or
+  // bits if it is lossless. At least two frames must be coded, unless there is only one.
   double cost() const;
-  // Of the frames coded so far: over all values, squared grid units.
+  // Returns the squared error of the frames coded so far, over all values, squared grid units.
   double squared_error() const { return squared_error_; }
-  // Codes the remaining frames. Once.
+  // Codes the remaining frames. Call it once.
   EncodedSpan finish();
 
  private:
@@ -70,17 +70,17 @@ class InterTrial {
   const SequenceHeader& header_;
   const SpanFrames& frames_;
   const InterChoice choice_;
-  const std::vector<EarlierFrame> earlier_;  // by place in coding order
+  const std::vector<EarlierFrame> earlier_;  // [place in coding order]
   const std::shared_ptr<const RestEncoding> first_;
   const InterSettings settings_;
   ClosedLoop coding_;
   DecodedSpan decoded_;
   EncodedSpan encoded_;
-  std::shared_ptr<std::vector<InterFrame>> coded_;  // null: there is one temporal layer
+  std::shared_ptr<std::vector<InterFrame>> coded_;  // null: only one temporal layer
   std::uint32_t num_coded_ = 0;
   double bits_of_units_ = 0.0;
-  double bits_of_start_ = 0.0;  // of the GOF unit and the first frame
-  // [depth]: bits of the last frame that was predicted as the pattern says; 0: there is none.
+  double bits_of_start_ = 0.0;  // bits of the GOF unit and the first frame
+  // [depth]: bits of the last frame that was predicted as the pattern says; 0: no such frame.
   std::vector<double> bits_of_pattern_;
   double squared_error_ = 0.0;
 };

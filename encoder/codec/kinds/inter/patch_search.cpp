@@ -19,18 +19,18 @@ namespace rlpc {
 namespace {
 
 constexpr std::size_t kTogether = 128;                        // fixed: vertices of a pass
-constexpr std::size_t kPatchesTogether = 16;                  // fixed: likewise
+constexpr std::size_t kPatchesTogether = 16;                  // fixed: patches of a pass
 constexpr double kPoint = 1 << kPointFractionBits;            // fixed: format
 constexpr double kStepUnits = 256.0 / kPoint;                 // fixed: format
 constexpr double kMatrixOne = 1 << kMatrixFractionBits;       // fixed: format
 constexpr double kMotionStep = 1.0 / (1 << kMotionStepLog2);  // fixed: format
 
-// A step of a vertex, in 1/16 grid units.
+// Returns the step of a vertex, in 1/16 grid units.
 double step_of(const InterRecon& recon, std::uint32_t v) {
   return static_cast<double>(recon.step(v)) / kStepUnits;
 }
 
-// Bits of a motion, whose patch the contexts have started; they are left as they were.
+// Returns the bits of a motion whose patch the contexts have started; leaves these unchanged.
 double motion_bits(PatchContexts& contexts, const PatchMotion& motion) {
   BitEstimate bits;
   const PatchContexts::Means before = contexts.means();
@@ -51,7 +51,7 @@ double mode_bits(PatchContexts& contexts, int mode) {
   return bits.bits();
 }
 
-// Models and contexts adapt to a patch as the writer's do.
+// Adapts models and contexts to a patch as the writer does.
 void adapt(PatchContexts& contexts, const PatchMotion& motion) {
   const int mode = static_cast<int>(motion.mode);
   for (int i = 0; i < std::min(mode + 1, kPatchModes - 1); ++i) {
@@ -66,7 +66,7 @@ void adapt(PatchContexts& contexts, const PatchMotion& motion) {
   }
 }
 
-// fixed: a guard. Holds the matrix of a motion back to the last one where a flat patch does not
+// fixed: a guard. Pulls the matrix of a motion to the last one where a flat patch does not
 // determine it; relative to the mean square of distances.
 constexpr double kRidge = 1e-6;
 
@@ -112,7 +112,8 @@ FramePatches PatchSearch::choose(std::span<const double> xyz, std::uint32_t dept
   return patches;
 }
 
-// Of the whole motion, its offset alone, and the last motion: by what they leave, and bits.
+// Returns the cheapest of the whole motion, its offset alone, and the last motion: by residuals
+// and bits.
 PatchMotion PatchSearch::cheapest_motion(std::size_t patch, std::span<const double> xyz,
                                          std::uint32_t depth, const InterRecon& recon,
                                          PatchContexts& contexts) {
@@ -132,7 +133,8 @@ PatchMotion PatchSearch::cheapest_motion(std::size_t patch, std::span<const doub
   return cheapest;
 }
 
-// patches: their motions; the motions of those that do not follow them are taken away.
+// Chooses the modes of patches. patches: has their motions; those that are not used are
+// removed.
 void PatchSearch::choose_modes(const Costs& of_neighbours, const Costs& of_motion,
                                PatchContexts contexts, FramePatches& patches) const {
   for (std::size_t p = 0; p < patches.size(); ++p) {
@@ -150,7 +152,7 @@ void PatchSearch::choose_modes(const Costs& of_neighbours, const Costs& of_motio
   }
 }
 
-// Without residuals, in bits.
+// Returns the cost of a patch without residuals, in bits.
 double PatchSearch::cost_alone(std::size_t patch) const {
   double error = 0.0;
   for (const std::uint32_t v : vertices_[patch]) {
@@ -191,7 +193,7 @@ PatchSearch::Costs PatchSearch::costs(InterContexts& contexts,
   return costs;
 }
 
-// Closed loop, with residuals rounded without models.
+// Predicts in closed loop, with residuals rounded without models.
 void PatchSearch::predict_from_neighbours(std::span<const double> xyz, InterRecon& recon) {
   const double round_up = settings_.exact_flag ? 0.5 : 0.5 - kDeadZone;
   for (std::uint32_t layer = 0; layer < mesh_.num_layers(); ++layer) {
@@ -219,7 +221,7 @@ void PatchSearch::predict_from_neighbours(std::span<const double> xyz, InterReco
   }
 }
 
-// Least squares: what the last motion of the patch leaves.
+// Fits the residual of the last motion of the patch by least squares.
 PatchMotion PatchSearch::fit(std::size_t patch, std::span<const double> xyz,
                              std::uint32_t depth, const InterRecon& recon) const {
   const auto reference = recon.reference();
@@ -259,9 +261,9 @@ PatchMotion PatchSearch::fit(std::size_t patch, std::span<const double> xyz,
   return motion;
 }
 
-// The squared error of a motion, in squared steps; `left`, if given, gets the residuals. They
-// are those from the decoder's integers: with other rounding, a patch without residuals would
-// be taken for exact though some of its coordinates are one step off.
+// Returns the squared error of a motion, in squared steps; `left`, if given, receives the
+// residuals. They are computed from the decoder's integers: with other rounding, a patch
+// without residuals would be taken for exact though some of its coordinates are one step off.
 double PatchSearch::error(std::size_t patch, std::span<const double> xyz, std::uint32_t depth,
                           const InterRecon& recon, const PatchMotion& motion,
                           std::vector<double>* left) const {

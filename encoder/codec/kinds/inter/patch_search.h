@@ -16,13 +16,14 @@ namespace rlpc {
 class PatchSearch {
  public:
   // The mesh must have layers; mesh and settings, which have patches, must outlive it.
-  // to_nearest: residuals are rounded to nearest, and no coordinate errs by more than that.
+  // to_nearest: residuals are rounded to nearest, and no coordinate has a larger error than
+  // that.
   PatchSearch(const OrderedMesh& mesh, const InterSettings& settings, bool to_nearest);
 
-  // Of the frame that recon has started, not the first of its GOF; xyz [num_vertices][3], in
-  // grid units. contexts: those of the writer, which has started the frame. Predicts all
-  // vertices from neighbours, for comparison, which leaves no trace in recon once the frame is
-  // coded. Takes about as long as to code it.
+  // Chooses the patches of the frame that recon has started, not the first of its GOF; xyz
+  // [num_vertices][3], in grid units. contexts: those of the writer, which has started the
+  // frame. Predicts all vertices from neighbours, for comparison; coding the frame overwrites
+  // this in recon. Takes about as long as coding the frame.
   FramePatches choose(std::span<const double> xyz, std::uint32_t depth,
                       const PatchContexts& contexts, InterRecon& recon);
 
@@ -46,12 +47,12 @@ class PatchSearch {
   const OrderedMesh& mesh_;
   const InterSettings& settings_;
   double most_alone_;  // error of a coordinate of a patch without residuals, in steps
-  std::vector<std::vector<std::uint32_t>> vertices_;  // of each patch
+  std::vector<std::vector<std::uint32_t>> vertices_;  // [patch]
   // [num_vertices][3]: residuals in steps, from neighbours and from motions.
   std::vector<double> wanted_;
   std::vector<double> left_;
-  // As if all vertices were predicted in one way in all frames: what a mode has cost a patch
-  // does not depend on the mode that was chosen for it.
+  // Contexts as if all vertices were predicted in one way in all frames: the cost of a mode in
+  // a patch does not depend on the mode that was chosen for it.
   InterContexts of_neighbours_;
   InterContexts of_motions_;
 };

@@ -18,19 +18,20 @@ constexpr std::array<int, 2> kPeriodsLog2{4, 6};
 
 // tuned (off: 0): Numbers of patches that are compared, besides none.
 constexpr std::uint32_t kFewPatches = 16;
-// tuned (off: 0): Likewise.
+// tuned (off: 0): The larger number of patches that is compared.
 constexpr std::uint32_t kManyPatches = 48;
 
 FramePattern dyadic(int period_log2) { return {FramePattern::kDyadic, period_log2, {}, 1}; }
 
-// The first frames of a GOF that all patterns code in whole periods: at least a part.
+// Returns the number of first frames that all patterns code in whole periods, at least a part.
 std::uint32_t whole_periods(std::uint32_t num_frames, std::size_t part, std::uint32_t period) {
   const std::size_t periods = ((num_frames - 1) / part + period - 1) / period;
   return static_cast<std::uint32_t>(
       std::min<std::size_t>(num_frames, 1 + std::max<std::size_t>(periods, 1) * period));
 }
 
-// The factor of the steps that about leads to the wanted squared error; 1 if it is near enough.
+// Returns the factor of the steps that leads to about the wanted squared error; 1 if it is near
+// enough.
 double scale_to(double wanted, double squared_error) {
   // fixed: differences half and twice as large give the same streams of six animations.
   constexpr double kNear = 1.05;
@@ -45,7 +46,7 @@ void code_all_to(Encodings& encodings, std::uint32_t count) {
   for_each(encodings.size(), [&](std::size_t i) { encodings[i]->code_to(count); });
 }
 
-// Starts all anew but those that have about the error of the first.
+// Restarts all encodings except those that have about the error of the first.
 void restart_at_equal_error(Encodings& encodings, const StartTrial& start) {
   const double wanted = encodings.front()->squared_error();
   for (auto& encoding : encodings) {

@@ -13,31 +13,30 @@
 
 namespace rlpc {
 
-// The patterns that a GOF may have under the settings, at least one: those to be compared.
+// Returns the patterns to compare that a GOF may have under the settings; at least one.
 //
 //   is_open_ended  frames are decoded as they arrive, and must not wait for later ones
 std::vector<FramePattern> patterns_of(const EncoderSettings& settings, bool is_open_ended,
                                       std::uint32_t num_frames);
 
-// Likewise, numbers of patches, ascending.
+// Returns the numbers of patches to compare, ascending.
 std::vector<std::uint32_t> patches_of(const EncoderSettings& settings, bool is_open_ended,
                                       std::uint32_t num_frames);
 
-// The choices that numbers of patches are compared by: with the first pattern, and if there is
-// one, with the first whose frames are predicted from both sides, where motions are small.
+// Returns choices that compare numbers of patches: with the first pattern and, if there is one,
+// the first whose frames are predicted from both sides, where motions are small.
 std::vector<InterChoice> choices_of_patches(const std::vector<FramePattern>& patterns,
                                             const std::vector<std::uint32_t>& patches);
 
 // Starts the encoding of a GOF by a choice.
 using StartTrial = std::function<std::unique_ptr<InterTrial>(const InterChoice&)>;
 
-// Encodes a GOF by each choice, side by side on several threads. Half of them end early, the
-// costlier ones, each time twice as many frames are coded, until two are left: what moves later
-// may move in other ways, so that these are coded to the end. They are compared at equal error:
-// after the first of these parts, the steps of all are scaled so that they have about the error
-// of the first choice, and the part is coded again. What is coded in vain takes as long as two
-// and a half encodings, if there are four choices that take equally long. Returns the one that
-// is left.
+// Encodes a GOF by each choice, in parallel on several threads. Each time twice as many frames
+// are coded, the costlier half of the encodings ends, until two are left. These are coded to
+// the end, since later motion may differ. Encodings are compared at equal error: after the
+// first part, the steps of all are scaled so that they have about the error of the first
+// choice, and the part is coded again. With four choices that take equally long, discarded
+// encodings take as long as two and a half whole ones. Returns the cheapest.
 std::unique_ptr<InterTrial> cheapest(const std::vector<InterChoice>& choices,
                                      std::uint32_t num_frames, const StartTrial& start);
 

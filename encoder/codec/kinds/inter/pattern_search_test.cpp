@@ -32,7 +32,7 @@ class PatternSearch : public testing::Test {
     topology_ = make_topology(header_.num_vertices, triangles_);
   }
 
-  // A tube whose vertices are moved along each axis by shift( frame, vertex, axis ).
+  // Moves the vertices of a tube along each axis by shift( frame, vertex, axis ).
   using Shift = std::function<double(std::uint32_t f, std::uint32_t v, std::uint32_t c)>;
   SpanFrames tube(std::uint32_t num_frames, const Shift& shift) const {
     SpanFrames frames{header_.num_vertices, num_frames, {}};
@@ -58,7 +58,7 @@ class PatternSearch : public testing::Test {
     }
     return encoded(frames, step);
   }
-  // The pattern that is chosen. It must cost no more than the others do.
+  // Returns the chosen pattern, which must cost no more than the others.
   std::string chosen(const SpanFrames& frames) {
     settings_.inter.pattern.reset();
     const EncodedSpan best = encoded(frames);
@@ -134,7 +134,7 @@ TEST_F(PatternSearch, KnowsItsError) {
   EXPECT_NEAR(*gof.squared_error, squared_error(frames, gof.frame), 1e-6 * *gof.squared_error);
 }
 
-// Two halves that move against each other, with bumps that no neighbours tell.
+// Two halves move against each other, with bumps that neighbours do not predict.
 TEST_F(PatternSearch, RigidPartsGetPatches) {
   settings_.inter.patches.reset();
   const SpanFrames frames = tube(40, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {

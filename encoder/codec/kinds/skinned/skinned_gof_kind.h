@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-// Null for the Baseline profile.
+// Returns null for the Baseline profile.
 std::unique_ptr<KindEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
                                                    const EncoderSettings& settings);
 

@@ -14,16 +14,16 @@ namespace rlpc {
 namespace {
 
 // tuned (off: 1): With bones, an analysis is used for steps within this factor. Their error is
-// that of bones and rest positions, and follows the step only if these are coded anew.
+// that of bones and rest positions, and follows the step only if these are coded again.
 constexpr double kBonesServe = 1.03;
 // tuned (off: 1): The principal components of a draft serve an encoding for steps within this
 // factor, unless the preset is fast: they hold the errors of bones and rest positions, which
-// are coded anew.
+// are coded again.
 constexpr double kComponentsServe = 1.2;
 
 }  // namespace
 
-// The expected squared error of a trial at another step.
+// Returns the expected squared error of a trial at another step.
 double SkinnedSpanCoder::error_at(double step, const Draft& draft) {
   if (draft.analysis.rig.bones.size() > 1) {
     return draft.error * det_exp2(kErrorPower * det_log2(step / draft.step));
@@ -32,8 +32,8 @@ double SkinnedSpanCoder::error_at(double step, const Draft& draft) {
          expected_squared_error(draft.analysis, draft.step);
 }
 
-// What shows the step at which the target is expected: a draft of the likeliest bones or, with
-// a single bone, its components.
+// Returns the draft that shows the step at which the target is expected: a draft of the
+// likeliest bones or, with a single bone, its components.
 SkinnedSpanCoder::Draft SkinnedSpanCoder::survey(SkinnedCandidate likeliest,
                                                  double step) const {
   if (likeliest.rig.bones.size() > 1) {
@@ -50,7 +50,7 @@ SkinnedSpanCoder::Draft SkinnedSpanCoder::survey(SkinnedCandidate likeliest,
 
 double SkinnedSpanCoder::step_of_error(double wanted, const Draft& draft) {
   constexpr double kFinestStep = 0.5;  // fixed: as in the search for the target
-  constexpr double kFarthest = 50.0;   // fixed: likewise
+  constexpr double kFarthest = 50.0;   // fixed: as in the search for the target
   constexpr int kHalvings = 12;        // fixed: precise enough
   double low = draft.step / kFarthest;
   double high = draft.step * kFarthest;
@@ -85,7 +85,7 @@ void SkinnedSpanCoder::choose(double step) {
   bones_.release();
 }
 
-// Without bones, the components of the draft serve, as the only bone hardly changes.
+// Without bones, reuses the components of the draft, as the only bone barely changes.
 const SkinnedAnalysis& SkinnedSpanCoder::analysis_for(double step) {
   const double factor =
       context_.settings.preset == Preset::kFast ? kDraftServes : kComponentsServe;
@@ -97,7 +97,7 @@ const SkinnedAnalysis& SkinnedSpanCoder::analysis_for(double step) {
   });
 }
 
-// Whether what is coded follows the step, with the analysis that there is: it has trajectories.
+// Whether an encoding with the present analysis follows the step: it has trajectories.
 bool SkinnedSpanCoder::is_valid_for(double step) const {
   // tuned (off: 0): A stored analysis serves other steps only if it codes at least this many
   // trajectories. With fewer, the error comes from bones and rest positions, and a new analysis

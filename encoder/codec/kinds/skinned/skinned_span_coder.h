@@ -32,13 +32,13 @@ class SkinnedSpanCoder : public SpanCoder {
   void release_analysis() override;
 
  private:
-  // A draft: the step that it was made for, its squared error and its analysis.
+  // A draft: its step, squared error and analysis.
   struct Draft {
     double step = 0.0;
     double error = 0.0;
     SkinnedAnalysis analysis;
-    std::size_t num_trajectories = 0;  // if it is encoded
-    bool is_encoded = false;           // otherwise, the error is what its components let expect
+    std::size_t num_trajectories = 0;  // set if it is encoded
+    bool is_encoded = false;           // false: the error is expected from its components
   };
 
   static double error_at(double step, const Draft& draft);
@@ -55,8 +55,8 @@ class SkinnedSpanCoder : public SpanCoder {
   BoneSearch bones_;
   // Bones and tools, chosen for the step at which the target is expected.
   std::optional<SkinnedCandidate> choice_;
-  std::optional<Draft> draft_;           // of the choice
-  StepCache<SkinnedAnalysis> analysis_;  // of the choice
+  std::optional<Draft> draft_;           // draft of choice_
+  StepCache<SkinnedAnalysis> analysis_;  // analysis of choice_
 };
 
 }  // namespace rlpc

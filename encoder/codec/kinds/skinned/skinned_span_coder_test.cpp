@@ -60,12 +60,12 @@ Point turned(const Point& p, double angle) {
   return {c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]};
 }
 Point still(const Point& p, double) { return p; }
-// Motion with varying speed, so that extrapolation is not exact.
+// Moves a point with varying speed, so that extrapolation is not exact.
 Point rigid(const Point& p, double f) {
   const Point q = turned({p[0], p[2], p[1]}, 0.8 * std::sin(0.5 * f));
   return {q[0] + 5000.0 * std::sin(0.37 * f), q[1], q[2] - 70.0 * f};
 }
-// The second half bends smoothly relative to the first, and swells.
+// Bends the second half smoothly relative to the first, and swells it.
 Point bending(const Point& p, double f) {
   const double bend = 0.5 * std::sin(0.4 * f) * std::tanh((p[0] - 12000.0) / 3000.0);
   const Point q = turned({p[0] - 12000.0, p[1], p[2]}, bend);
@@ -75,7 +75,7 @@ Point bending(const Point& p, double f) {
 struct Outcome {
   EncodedSpan gof;
   std::size_t bytes = 0;
-  double rms_error = 0.0;  // of a coordinate, grid steps
+  double rms_error = 0.0;  // RMS error of a coordinate, grid steps
 };
 
 Outcome encode(const Animation& a, double step, const EncoderSettings& settings) {
@@ -160,7 +160,7 @@ TEST(SkinnedSpanCoder, EstimatesTheErrorWithOneBone) {
   EXPECT_LT(most, 1.2 * least);
 }
 
-// From a draft, so that it ends with the first encoding.
+// The estimate comes from a draft, and so ends with the first encoding.
 TEST(SkinnedSpanCoder, EstimatesTheErrorWithSeveralBonesUntilItEncodes) {
   const Animation a(bending);
   EncoderSettings settings;
@@ -194,7 +194,7 @@ std::size_t bytes_of(const EncodedSpan& gof) {
   return bytes;
 }
 
-// Components that are kept from the first step on hardly affect the result.
+// Components that are kept from the first step on barely affect the result.
 TEST(SkinnedSpanCoder, RecomputesAReleasedAnalysis) {
   const Animation a(bending);
   const EncoderSettings settings;

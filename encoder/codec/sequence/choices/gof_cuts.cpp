@@ -17,11 +17,11 @@ namespace rlpc {
 namespace {
 
 constexpr std::uint64_t kMaxSampleValues = std::uint64_t{1} << 21;  // fixed: memory
-constexpr std::uint32_t kLeastVertices = 8;                         // fixed: that tell anything
+constexpr std::uint32_t kLeastVertices = 8;                         // fixed: fewer say nothing
 constexpr std::uint32_t kMostFrames = kMaxSampleValues / 3 / kLeastVertices;  // fixed: memory
 // tuned (off: 1): GOFs of unequal length are used only if their expected cost is lower by this
-// fraction. The estimate leaves out bones, which gain from long GOFs, so that small differences
-// mean nothing.
+// fraction. The estimate leaves out bones, which gain from long GOFs, so small differences mean
+// nothing.
 constexpr double kLeastGain = 0.03;
 
 // Estimates the cost of GOFs from a sample of the vertices.
@@ -37,8 +37,8 @@ class GofCosts {
     }
   }
 
-  // To be called for all frames in order. Stores positions relative to the centre of the
-  // sample.
+  // Adds a frame; call it for all frames in order. Stores positions relative to the centre of
+  // the sample.
   void add_frame(std::span<const float> xyz) {
     std::array<double, 3> centre{};
     for (const std::uint32_t v : vertices_) {
@@ -53,16 +53,16 @@ class GofCosts {
     }
   }
 
-  // Expected Lagrangian cost of a GOF, cached.
+  // Returns the expected Lagrangian cost of a GOF, cached.
   double of(const FrameRange& span) {
-    // tuned: Frames of a GOF in its sample. More hardly change the estimate.
+    // tuned: Frames of a GOF in its sample. More barely change the estimate.
     constexpr std::uint32_t kFrames = 16;
     const auto [place, is_new] = known_.try_emplace({span.first, span.count}, 0.0);
     if (is_new) place->second = expected(span, kFrames);
     return place->second;
   }
-  // The same for equal GOFs of at most `longest` frames, from every eighth frame, so that
-  // lengths can be compared.
+  // Returns the same for equal GOFs of at most `longest` frames, from every eighth frame, so
+  // that lengths can be compared.
   double of_equal(std::uint32_t num_frames, std::uint32_t longest) const {
     constexpr std::uint32_t kEvery = 8;  // fixed: 16 of 128 frames, as above
     double sum = 0.0;
@@ -73,8 +73,8 @@ class GofCosts {
   }
 
  private:
-  // Displacements of the vertices from their mean positions in a sample of frames. The sample
-  // includes the first and the last frame, which reveal a cut that is slightly misplaced.
+  // Returns displacements of the vertices from their mean positions in a sample of frames. The
+  // sample includes the first and the last frame, which reveal a slightly misplaced cut.
   TrajectoryMatrix displacements(const FrameRange& span, std::uint32_t most) const {
     const std::uint32_t count = std::min(span.count, most);
     TrajectoryMatrix matrix;
@@ -101,7 +101,7 @@ class GofCosts {
   }
 
   double expected(const FrameRange& span, std::uint32_t most) const {
-    // tuned (off: 0): Bits of a rest position, which each GOF codes anew: about five for each
+    // tuned (off: 0): Bits of a rest position, which each GOF codes again: about five for each
     // coordinate. Without this cost, GOFs would be cut far too often.
     constexpr double kRestBits = 15.0;
     const TrajectoryMatrix matrix = displacements(span, most);
@@ -131,13 +131,13 @@ double cost(GofCosts& costs, const std::vector<FrameRange>& spans) {
   return sum;
 }
 
-// The cheapest division into GOFs that all begin at multiples of `unit`, by dynamic
+// Returns the cheapest division into GOFs that all begin at multiples of `unit`, by dynamic
 // programming.
 std::vector<FrameRange> cheapest_of_units(GofCosts& costs, std::uint32_t num_frames,
                                           std::uint32_t longest, std::uint32_t unit) {
   struct Best {
     double cost = std::numeric_limits<double>::infinity();
-    std::uint32_t before = 0;  // where the last span begins, in units
+    std::uint32_t before = 0;  // start of the last span, in units
   };
   const std::uint32_t num_units = (num_frames + unit - 1) / unit;
   std::vector<Best> best(num_units + 1);  // [end]: division of the frames before end * unit

@@ -36,7 +36,7 @@ class Motion final : public FrameSource {
   At at_;
 };
 
-// A sum of waves; each act has different ones.
+// Returns a sum of waves; each act has different ones.
 double waves(std::uint32_t act, std::uint32_t f, std::uint32_t v, std::uint32_t c) {
   double x = v % 25 + 30.0 * c;
   for (std::uint32_t k = 1; k <= 8; ++k) {
@@ -134,7 +134,7 @@ TEST(ChooseLongestGof, IsLongWhereEachGofWouldOnlyCodeTheShapeAgain) {
 }
 
 TEST(ChooseLongestGof, IsShortWhereLongOnesSaveLittle) {
-  // Random bits of a sum that mixes frame, vertex and axis.
+  // Noise from the bits of a sum that mixes frame, vertex and axis.
   Motion noise(512, [](std::uint32_t f, std::uint32_t v, std::uint32_t c) {
     std::uint32_t x = f * 2654435761U + v * 40503U + c * 97U;
     x ^= x >> 13U;

@@ -5,7 +5,7 @@
 
 namespace rlpc {
 
-// The kinds that profile and settings allow, the most likely first; at least one. Keeps
+// Returns the kinds that profile and settings allow, the most likely first; at least one. Keeps
 // references to mesh and settings.
 KindEncoders make_gof_kinds(const SequenceMesh& mesh, const EncoderSettings& settings);
 

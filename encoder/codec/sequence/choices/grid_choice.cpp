@@ -17,9 +17,9 @@ constexpr double kMaxCoordinate = 0x1p100;  // fixed: larger ones overflow squar
 constexpr int kDefaultPositionBits = 20;    // fixed: a grid that is never too coarse
 constexpr double kStepsPerError = 32.0;  // fixed: rounding adds 1e-4 of the least squared error
 constexpr double kMargin =
-    1.02;  // fixed: room, so that decoded positions are hardly ever clipped
+    1.02;  // fixed: room, so that decoded positions are almost never clipped
 
-// Smallest n with 2^n >= x; x > 0.
+// Returns the smallest n with 2^n >= x; x > 0.
 int ceil_exponent(double x) {
   int n = static_cast<int>(std::floor(det_log2(x))) - 1;
   while (exact_exp2(n) < x) ++n;

@@ -17,7 +17,7 @@ struct Extent {
   double rms_spread = 0.0;  // RMS of the coordinates about the mean of their frame, units
 };
 
-// Reads every frame once. Errors: those of the source; coordinates beyond 2^100.
+// Reads every frame once. Errors: errors of the source; coordinates beyond 2^100.
 InputResult<Extent> measure_extent(FrameSource& source);
 
 struct GridChoice {
@@ -25,12 +25,13 @@ struct GridChoice {
   int position_bits = 0;
 };
 
-// The error, in units, that the target asks for; 0 if that is not known in advance. A much
-// finer grid would gain nothing and cost bits, because steps are limited to a maximum number of
-// grid steps. rms_spread: as in Extent.
+// Returns the error, in units, that the target asks for; 0 if that is not known in advance. A
+// much finer grid would gain nothing and cost bits, because steps are limited to a maximum
+// number of grid steps. rms_spread: as in Extent.
 double finest_error(const Target& target, double rms_spread);
 
-// The coarsest suitable grid. finest_error: the smallest error that matters, units; 0: unknown.
+// Returns the coarsest suitable grid. finest_error: smallest error that matters, units; 0:
+// unknown.
 GridChoice choose_grid(const Extent& extent, double finest_error);
 
 inline void set_grid(SequenceHeader& header, const GridChoice& choice) {

@@ -25,12 +25,12 @@ struct LevelNeeds {
   std::uint32_t components = 0;
 
   explicit LevelNeeds(const EncodedSpan& encoded);
-  // Requirements of the clusters, bones and components set explicitly; a GOF may have fewer.
+  // Takes the clusters, bones and components that are set explicitly; a GOF may have fewer.
   explicit LevelNeeds(const EncoderSettings& settings);
-  // Doubles each requirement, up to the limits of the highest level.
+  // Returns each requirement doubled, up to the limits of the highest level.
   LevelNeeds with_reserve() const;
-  // The lowest level, from level_idc on, that meets all requirements; none if there is no such
-  // level.
+  // Returns the lowest level, from level_idc on, that meets all requirements; none if no level
+  // does.
   std::optional<std::uint32_t> level_from(std::uint32_t level_idc) const;
 };
 

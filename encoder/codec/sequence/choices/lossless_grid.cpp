@@ -15,7 +15,7 @@
 namespace rlpc {
 namespace {
 
-// The largest n for which the number, which must not be 0, is a multiple of 2^n.
+// Returns the largest n for which the number, which must not be 0, is a multiple of 2^n.
 int lowest_bit(float x) {
   constexpr int kMantissaBits = 23;        // fixed: IEEE 754
   constexpr int kDenormalExponent = -149;  // fixed: IEEE 754

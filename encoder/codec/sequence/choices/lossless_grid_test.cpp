@@ -32,7 +32,8 @@ InputResult<GridChoice> own_grid(Points& points) {
   return grid_of_source(points, *measure_extent(points));
 }
 
-// The position that the encoder rounds x to, and the coordinate that a decoder makes of it.
+// Returns the coordinate that a decoder computes from the position that the encoder rounds x
+// to.
 float restored(const GridChoice& choice, std::size_t c, float x) {
   const double position =
       std::floor(std::ldexp(double{x}, -choice.grid.log2_step) + 0.5) - choice.grid.origin[c];
@@ -60,7 +61,7 @@ TEST(LosslessGrid, RestoresEveryCoordinate) {
     const auto origin = static_cast<std::int32_t>(random() % 16777216) - 8388608;
     std::vector<float> xyz(30);
     for (float& x : xyz) {
-      // Of 24 bits at most, as a float has.
+      // Numbers of steps have 24 bits at most, like floats.
       const auto steps =
           std::clamp(origin + static_cast<std::int32_t>(random() % width), -16777215, 16777215);
       x = std::ldexp(static_cast<float>(steps), log2_step);

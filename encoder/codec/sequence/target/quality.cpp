@@ -25,7 +25,7 @@ InputResult<std::optional<Visibility>> measure_visibility(FrameSource& source,
     lengths.push_back(std::sqrt(squared));
     sum += lengths.back();
   }
-  // Collapsed edges, and triangles with them, are not seen.
+  // Collapsed edges, and triangles with them, are invisible.
   constexpr double kCollapsed = 1e-3;  // fixed: part of the mean length, far below sight
   const double shortest = kCollapsed * sum / static_cast<double>(lengths.size());
   std::erase_if(lengths, [&](double length) { return length <= shortest; });

@@ -33,14 +33,14 @@ static_assert(Target{}.value == kQualities[1].kg_error_percent);  // the default
 struct Visibility {
   static constexpr double kVisiblePercent = 3.0;  // fixed: see above
 
-  // Median length of edges in the first frame, units; of those that have not collapsed.
+  // Median length of edges that have not collapsed in the first frame, units.
   double median_edge = 0.0;
   double error_percent = 0.0;  // RMS error, in per cent of median_edge
 
   bool visible() const { return error_percent > kVisiblePercent; }
 };
 
-// None if there are no edges, or none has a length. Errors: those of the source.
+// Returns none if there are no edges, or none has a length. Errors: errors of the source.
 InputResult<std::optional<Visibility>> measure_visibility(FrameSource& source,
                                                           const Metrics& metrics);
 

@@ -1,4 +1,4 @@
-// Parts of TargetSearch: what the search has learnt from its trials so far.
+// Parts of TargetSearch: the knowledge from its trials so far.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ class BestEncoding {
  public:
   explicit BestEncoding(const Target& target) : target_(target) {}
 
-  // Adds an encoding; true if it is the best so far. tolerance: relative distance below the
-  // target that counts as close.
+  // Adds an encoding. Returns true if it is the best so far. tolerance: relative distance below
+  // the target that counts as close.
   bool offer(double measured, std::uint64_t bytes, double tolerance) {
     const bool better = is_better(measured, bytes);
     const bool within = measured <= target_.value;
@@ -29,9 +29,9 @@ class BestEncoding {
     }
     return better;
   }
-  bool met() const { return met_; }      // an encoding does not exceed the target
-  bool close() const { return close_; }  // one is also within the tolerance
-  // The best does not exceed the target, and is at most this fraction below.
+  bool met() const { return met_; }      // whether an encoding does not exceed the target
+  bool close() const { return close_; }  // whether one is also within the tolerance
+  // Whether the best does not exceed the target, and is at most this fraction below it.
   bool met_within(double fraction) const {
     return met_ && measured_ >= target_.value * (1.0 - fraction);
   }
@@ -66,9 +66,9 @@ class Bracket {
   bool closed() const { return fine_.step > 0.0 && coarse_.step > 0.0; }
   bool within(double factor) const { return coarse_.step < factor * fine_.step; }
   double coarse_step() const { return coarse_.step; }
-  // The step at which linear interpolation gives the value `aim`.
+  // Returns the step at which linear interpolation gives the value `aim`.
   double interpolate(double aim) const {
-    constexpr double kEnd = 0.02;  // fixed: never at an end that is known
+    constexpr double kEnd = 0.02;  // fixed: never at a known end
     const double fraction = (aim - fine_.value) / (coarse_.value - fine_.value);
     return fine_.step + (coarse_.step - fine_.step) * std::clamp(fraction, kEnd, 1.0 - kEnd);
   }
@@ -83,7 +83,7 @@ class Bracket {
   End coarse_;  // the last step that was too coarse
 };
 
-// Rigs measured values as a power of the step.
+// Models measured values as a power of the step.
 class PowerLaw {
  public:
   explicit PowerLaw(double usual_exponent) : usual_(usual_exponent), exponent_(usual_) {}

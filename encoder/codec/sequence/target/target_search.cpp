@@ -9,10 +9,10 @@ namespace rlpc {
 namespace {
 
 constexpr int kMaxTrials = 18;            // fixed: a search ends
-constexpr double kTolerance = 0.02;       // fixed: of the target, below it; promised to users
+constexpr double kTolerance = 0.02;       // fixed: below the target; a promise to users
 constexpr double kFinestStep = 0.5;       // fixed: grid steps
 constexpr double kCoarsestStep = 0x1p24;  // fixed: grid steps
-constexpr double kFarthest = 50.0;        // fixed: from one step to the next, as a factor
+constexpr double kFarthest = 50.0;        // fixed: factor from one step to the next
 // Exponents are clamped to this factor above and below the usual one.
 constexpr double kSteepest = 2.0;  // fixed: a guard against wrong expectations
 // The maximum error is a discontinuous function of the step. At a jump, narrowing the bracket
@@ -28,11 +28,11 @@ constexpr int kSamples = 8;
 // from it.
 constexpr double kRateExponent = -0.5;
 
-// tuned (off: 1): The same for the KG error: what is not coded, and errors of rounding to zero,
-// grow more slowly than the step.
+// tuned (off: 1): The same for the KG error: the error of uncoded components and of rounding to
+// zero grows more slowly than the step.
 constexpr double kErrorExponent = 0.85;
 
-// The usual exponent of the measured value as a power of the step.
+// Returns the usual exponent of the measured value as a power of the step.
 double usual_exponent(const Target& target) {
   if (target.kind == Target::kBpvf) return kRateExponent;
   return target.kind == Target::kKg ? kErrorExponent : 1.0;
@@ -100,8 +100,8 @@ bool TargetSearch::is_near(double measured) const {
   return serves(analysis_step(), factor * step_);
 }
 
-// The step at which `value` is expected, by bisection; only for errors, which rise with the
-// step.
+// Returns the step at which `value` is expected, by bisection; only for errors, which rise with
+// the step.
 double TargetSearch::step_for(double value, const Expected& expected) const {
   constexpr int kHalvings = 20;  // fixed: rounding
   double low = step_ / kFarthest;
@@ -114,11 +114,11 @@ double TargetSearch::step_for(double value, const Expected& expected) const {
 }
 
 void TargetSearch::choose_next(double measured, const Expected& expected) {
-  // The KG error jumps where one trajectory more is worth coding: there, interpolation misses
+  // The KG error jumps where one more trajectory is worth coding: there, interpolation misses
   // even in a narrow bracket, and so would further trials.
   constexpr int kUsualTrials = 4;     // fixed: a promise about time
   constexpr int kCostlyTrials = 3;    // fixed: a promise about time
-  constexpr double kFarBelow = 0.04;  // fixed: of the target; a promise to users
+  constexpr double kFarBelow = 0.04;  // fixed: part of the target; a promise to users
   const bool enough_of_costly = is_costly_ && target_.kind == Target::kKg &&
                                 trials_ >= kCostlyTrials && best_.met_within(kFarBelow);
   const bool enough =
@@ -134,7 +134,7 @@ void TargetSearch::choose_next(double measured, const Expected& expected) {
   constexpr double kBeyond = 1e9;  // fixed: more, or less, does not matter
   const double value = std::clamp(measured, target_.value / kBeyond, target_.value * kBeyond);
   power_law_.add(step_, value, 1.0 / kSteepest, kSteepest);
-  // Where nothing changes from step to step, each goes twice as far as the one before.
+  // If the value does not change, each step goes twice as far as the one before.
   num_equal_ = measured == last_measured_ ? num_equal_ + 1 : 0;
   last_measured_ = measured;
   const double far = exact_exp2(num_equal_) * det_log2(factor_to(aim(), value, expected));
@@ -165,7 +165,7 @@ void TargetSearch::narrow_bracket(double aim) {
   step_ = halves ? bracket_.middle() : bracket_.interpolate(aim);
 }
 
-// The factor from the current step to the one whose value should be `aim`.
+// Returns the factor from the current step to the one whose value should be `aim`.
 double TargetSearch::factor_to(double aim, double value, const Expected& expected) const {
   const double rise = det_log2(aim / value);
   if (!expected || !(expected(step_) > 0.0)) return det_exp2(rise / power_law_.exponent());

@@ -10,7 +10,7 @@
 namespace rlpc {
 
 // The quantiser steps that an analysis is valid for, as ratios to the step of the analysis:
-// strictly between finest and coarsest. A new analysis is made such that the ratio is made_for.
+// strictly between finest and coarsest. A new analysis is made so that the ratio is made_for.
 struct AnalysisRange {
   double finest;
   double made_for;
@@ -31,25 +31,26 @@ class TargetSearch {
   TargetSearch(const Target& target, double spread, double steps_per_unit, double step_of_error,
                const AnalysisRange& analysis_range);
 
-  // Before the first encoding: sets the first step, unless there is no target.
+  // Sets the first step, before the first encoding, unless there is no target.
   void begin_at(double step) {
     if (target_.has_search()) step_ = step;
   }
-  // Before the first encoding, if the target is an error: sets the first step to the one at
-  // which the target is expected. expected: from analyses made for analysis_step().
+  // Sets the first step, before the first encoding, to the one at which the target is expected,
+  // if the target is an error. expected: from analyses made for analysis_step().
   void begin_at(const Expected& expected);
-  // Encodings take long: a KG error of up to 4 % below the target ends the search after three.
+  // Declares encodings slow: a KG error of up to 4 % below the target ends the search after
+  // three.
   void set_costly() { is_costly_ = true; }
   double step() const { return step_; }
-  // The step to analyse for. Near the target it is kept as long as it is valid for step(),
-  // because the measured value jumps from one analysis to the next.
+  // Returns the step to analyse for. Near the target it is kept as long as it is valid for
+  // step(), because the measured value jumps from one analysis to the next.
   double analysis_step() const {
     return serves(frozen_, step_) ? frozen_ : step_ / range_.made_for;
   }
   double last_step() const { return last_step_; }
   // Reports an encoding with step(): its error or rate, in the unit of the target, and its
-  // bytes. True if it is the best so far. expected: if the target is an error, the estimate
-  // from the analyses of this encoding.
+  // bytes. Returns true if it is the best so far. expected: if the target is an error, the
+  // estimate from the analyses of this encoding.
   bool report(double measured, std::uint64_t bytes, const Expected& expected = {});
   bool finished() const { return finished_; }
   // Whether the best encoding does not exceed the target.
@@ -76,10 +77,10 @@ class TargetSearch {
   Bracket bracket_;
   PowerLaw power_law_;
   double last_measured_ = -1.0;  // below 0: none yet
-  int num_equal_ = 0;            // encodings before with the same
+  int num_equal_ = 0;            // number of earlier encodings with this value
   bool is_costly_ = false;
   int trials_ = 0;
-  bool was_interpolated_ = false;  // the current step, in a narrow bracket
+  bool was_interpolated_ = false;  // step_ was interpolated in a narrow bracket
   double sampled_from_ = 0.0;      // start of the samples beyond a jump; 0: not sampling
   int samples_ = 0;
   bool finished_ = false;

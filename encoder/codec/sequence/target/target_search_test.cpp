@@ -19,7 +19,7 @@ constexpr AnalysisRange kRange{.finest = 1.0 / 1.2, .made_for = 1.0, .coarsest =
 struct Outcome {
   double best = 0.0;  // measured value of the encoding reported as best
   double best_step = 0.0;
-  double least = std::numeric_limits<double>::infinity();  // of all measured values
+  double least = std::numeric_limits<double>::infinity();  // least measured value
   int trials = 0;
   bool met = false;
 };
@@ -127,8 +127,8 @@ TEST(TargetSearch, ReportsTheClosestFromBelowOfNoisyMeasurements) {
   EXPECT_GE(within, all * 95 / 100);
 }
 
-// Values that are a staircase, as maximum errors often are: ends on the last step below the
-// target.
+// Ends on the last step below the target if values are a staircase, as maximum errors often
+// are.
 TEST(TargetSearch, EndsOnTheLastStairBelowTheTarget) {
   const Outcome outcome =
       search({Target::kMaxError, 1.0}, [](double step) { return step < 700.0 ? 0.6 : 1.5; });
@@ -171,7 +171,7 @@ TEST(TargetSearch, FindsASmallerMaximumErrorBeyondAJump) {
   EXPECT_EQ(outcome.best, 0.9);
 }
 
-// Errors that level off at coarse steps, both as measured and as expected.
+// Returns errors that level off at coarse steps, both as measured and as expected.
 double expected_error(double step) { return step / 400.0 / std::sqrt(1.0 + step * step / 1e6); }
 
 int trials_with(const TargetSearch::Expected& expected, double value, double factor) {
@@ -233,7 +233,7 @@ TEST(TargetSearch, KeepsTheAnalysisForStepsThatItIsValidFor) {
   EXPECT_EQ(search.analysis_step(), made);
 }
 
-// As where a trajectory more is worth coding: no step gives an error near the target.
+// No step gives an error near the target, as where one more trajectory is worth coding.
 TEST(TargetSearch, EndsSoonWhereTheErrorJumps) {
   const Outcome outcome = search({Target::kKg, 1.0}, [](double step) {
     return step / 700.0 * (step < 700.0 ? 0.93 : 1.04);

@@ -89,7 +89,7 @@ class AccessorReader {
     return sparse;
   }
 
-  // The range of `count` elements of `size` bytes. counted: the JSON value that gives the
+  // Returns the range of `count` elements of `size` bytes. counted: the JSON value of the
   // count.
   GltfRange range(const GltfValue& value, const GltfValue& counted, std::uint64_t count,
                   std::uint64_t size) const {

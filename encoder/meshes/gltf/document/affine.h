@@ -24,7 +24,7 @@ struct Affine {
   }
 };
 
-// The composition: applies b, then a.
+// Returns the composition, which applies b, then a.
 inline Affine operator*(const Affine& a, const Affine& b) {
   Affine product;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -37,7 +37,7 @@ inline Affine operator*(const Affine& a, const Affine& b) {
   return product;
 }
 
-// Scales, then rotates (unit quaternion), then translates.
+// Returns a map that scales, then rotates (unit quaternion), then translates.
 inline Affine affine_of(const GltfVec3& translation, const GltfQuaternion& q,
                         const GltfVec3& scale) {
   const auto [x, y, z, w] = q;
@@ -53,7 +53,7 @@ inline Affine affine_of(const GltfVec3& translation, const GltfQuaternion& q,
   return map;
 }
 
-// From a column-major 4 x 4 matrix, whose last row is taken as 0, 0, 0, 1.
+// Returns the map of a column-major 4 x 4 matrix, whose last row is taken as 0, 0, 0, 1.
 inline Affine affine_of_columns(const std::vector<double>& columns) {
   assert(columns.size() == 16);
   Affine map;
@@ -63,7 +63,7 @@ inline Affine affine_of_columns(const std::vector<double>& columns) {
   return map;
 }
 
-// The determinant of the linear part; negative if the map mirrors.
+// Returns the determinant of the linear part; negative if the map mirrors.
 inline double determinant(const Affine& map) {
   const auto& [a, b, c] = map.row;
   return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +

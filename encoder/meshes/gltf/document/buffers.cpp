@@ -148,7 +148,7 @@ std::optional<GltfBuffers::Place> GltfBuffers::find_file(const std::string& plac
   const fs::path relative(percent_decoded(uri));
   const std::size_t colon = uri.find(':');
   const fs::path of_document = fs::path(file_.file.path()).parent_path();
-  // With its folder, so that it is never "-", which is standard input.
+  // Use the folder, so that the path is never "-", which is standard input.
   const fs::path folder = of_document.empty() ? fs::path(".") : of_document;
   if (!stays_inside(relative) || (colon != uri.npos && colon < uri.find('/')) ||
       !is_below(folder / relative, folder)) {

@@ -24,19 +24,19 @@ class GltfBuffers {
  public:
   GltfBuffers(std::vector<GltfBuffer> buffers, GltfFile& file, GltfErrors& errors);
 
-  // Actual bytes of the document and its buffers, as far as known.
+  // Returns the actual bytes of the document and its buffers, as far as known.
   std::uint64_t bytes_at_hand() const { return bytes_at_hand_; }
-  // Whether a buffer is complete; to be checked before allocating memory for its contents.
+  // Whether a buffer is complete; check this before allocating memory for its contents.
   bool available(std::uint32_t buffer);
-  // Bytes that are there, of an available buffer.
+  // Returns the actual bytes of an available buffer.
   std::uint64_t size(std::uint32_t buffer) const { return places_.at(buffer).size; }
-  // The buffer must be available, and offset + bytes.size() at most its size.
+  // Reads part of a buffer, which must be available; offset + bytes.size() is at most its size.
   void read(std::uint32_t buffer, std::uint64_t offset, std::span<char> bytes);
-  // The document and the files it refers to, as far as used.
+  // Returns the document and the files it refers to, as far as used.
   std::vector<std::string> files() const;
 
  private:
-  // Where the bytes of a buffer are: in `file` from `offset` on, or in `text`.
+  // Place of the bytes of a buffer: in `file` from `offset` on, or in `text`.
   struct Place {
     InputFile* file = nullptr;
     std::uint64_t offset = 0;
@@ -51,8 +51,8 @@ class GltfBuffers {
   std::vector<GltfBuffer> buffers_;
   GltfFile& file_;
   GltfErrors& errors_;
-  std::map<std::string, InputFile> others_;  // by path
-  std::map<std::uint32_t, Place> places_;    // by buffer, as far as used
+  std::map<std::string, InputFile> others_;  // [path]
+  std::map<std::uint32_t, Place> places_;    // [buffer], as far as used
   std::uint64_t bytes_at_hand_;
 };
 

@@ -11,7 +11,8 @@ namespace {
 
 using std::to_string;
 
-// Extensions that do not affect positions, and KHR_mesh_quantization, which is supported.
+// Whether an extension does not affect positions, or is KHR_mesh_quantization, which is
+// supported.
 bool is_supported(const std::string& extension) {
   static const char* const kHarmless[] = {
       "KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_",
@@ -30,7 +31,7 @@ void check_extensions(const GltfValue& required) {
   }
 }
 
-// Extensions without which the file can be read, but looks different.
+// Returns extensions without which the file can be read, but looks different.
 std::vector<std::string> left_out(const GltfValue& used) {
   std::vector<std::string> found;
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -43,7 +44,7 @@ std::vector<std::string> left_out(const GltfValue& used) {
   return found;
 }
 
-// Contents that a stream does not carry, in the words of users.
+// Returns contents that a stream does not carry, in the words of users.
 std::vector<std::string> dropped(const GltfValue& root) {
   std::vector<std::string> found;
   const GltfValue meshes = root["meshes"];
@@ -55,7 +56,8 @@ std::vector<std::string> dropped(const GltfValue& root) {
       has_tangents |= attributes["TANGENT"].exists();
     }
   }
-  // Viewers compute them from normals and texture coordinates; those of one pose are of no use.
+  // Viewers compute tangents from normals and texture coordinates; those of one pose are
+  // useless.
   if (has_tangents) found.emplace_back("tangents");
   const std::pair<const char*, const char*> arrays[] = {{"skins", "skeleton (not its motion)"},
                                                         {"cameras", "cameras"}};
@@ -90,7 +92,7 @@ struct Counts {
   std::size_t skins;
 };
 
-// Accessors of NAME_0, NAME_1 and so on, without gaps.
+// Returns the accessors of NAME_0, NAME_1 and so on, without gaps.
 std::vector<std::uint32_t> numbered(const GltfValue& attributes, const std::string& name,
                                     const Counts& counts) {
   std::vector<std::uint32_t> found;

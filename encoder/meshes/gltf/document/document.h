@@ -36,10 +36,10 @@ struct GltfPrimitive {
   std::optional<std::uint32_t> indices;  // accessors, here and below
   std::uint32_t positions = 0;
   bool is_compressed = false;  // compressed by an extension; may be unreadable without it
-  // None: the target does not move positions, or not turn normals.
+  // None: the target does not move positions, or does not turn normals.
   std::vector<std::optional<std::uint32_t>> targets;
   std::vector<std::optional<std::uint32_t>> normal_targets;
-  std::vector<std::uint32_t> joints;  // as many as weights
+  std::vector<std::uint32_t> joints;  // same size as weights
   std::vector<std::uint32_t> weights;
   std::vector<GltfAttribute> attributes;  // texture coordinates, normals, colours
   std::optional<std::uint32_t> tangents;
@@ -49,7 +49,7 @@ struct GltfPrimitive {
 };
 
 struct GltfMesh {
-  std::vector<GltfPrimitive> primitives;  // those with positions
+  std::vector<GltfPrimitive> primitives;  // only those with positions
   std::size_t num_targets = 0;            // per primitive
   std::vector<double> weights;            // [num_targets]
 };
@@ -60,9 +60,9 @@ struct GltfNode {
   std::vector<std::uint32_t> children;
   std::optional<Affine> matrix;  // replaces the next three members
   GltfVec3 translation{0, 0, 0};
-  GltfQuaternion rotation{0, 0, 0, 1};  // of length 1
+  GltfQuaternion rotation{0, 0, 0, 1};  // unit length
   GltfVec3 scale{1, 1, 1};
-  std::optional<std::vector<double>> weights;  // replace those of the mesh
+  std::optional<std::vector<double>> weights;  // replace the weights of the mesh
 };
 
 struct GltfSkin {
@@ -88,8 +88,8 @@ struct GltfAnimation {
   std::string name;
   std::vector<Sampler> samplers;
   std::vector<Channel> channels;
-  // Channels whose target is not a node: of each, the JSON pointer of KHR_animation_pointer, or
-  // empty.
+  // JSON pointer of KHR_animation_pointer, or empty, of each channel whose target is not a
+  // node.
   std::vector<std::string> pointers;
 };
 
@@ -109,7 +109,7 @@ struct GltfDocument {
   std::vector<std::string> dropped;
 };
 
-// Complete only if there are no errors.
+// Reads the document; complete only if there are no errors.
 GltfDocument read_gltf_document(const GltfValue& root, GltfErrors& errors);
 
 }  // namespace rlpc

@@ -33,9 +33,9 @@ InputResult<GlbChunks> find_chunks(InputFile& file) {
   return *chunks;
 }
 
-// Upper bound of the memory of a document. Each JSON value follows a bracket, comma or colon;
-// the size per value includes the spare capacity of arrays and maps. The largest structure made
-// of an object is a node.
+// Returns an upper bound of the memory of a document. Each JSON value follows a bracket, comma
+// or colon; the size per value includes the spare capacity of arrays and maps. The largest
+// structure for an object is a node.
 std::uint64_t bytes_of_document(std::string_view text) {
   constexpr std::uint64_t kOfValue = 112;
   constexpr std::uint64_t kOfObject = 1200;

@@ -21,7 +21,7 @@ struct GltfFile {
   std::uint64_t document_bytes = 0;
 };
 
-// .gltf and .glb are distinguished by contents, not by name.
+// Opens a file; .gltf and .glb are distinguished by contents, not by name.
 InputResult<GltfFile> open_gltf_file(const std::string& path, std::uint64_t max_memory_bytes);
 
 }  // namespace rlpc

@@ -1,7 +1,7 @@
-// Access to the JSON values of a glTF document, with error messages that give their path.
+// Access to the JSON values of a glTF document, with error messages that contain their path.
 //
 // Readers request what glTF 2.0 requires. The first violation is kept as an error, and the
-// request gives a legal value, so that readers need to check only once, before they use the
+// request returns a legal value, so that readers need to check only once, before they use the
 // result.
 #pragma once
 
@@ -49,22 +49,22 @@ class GltfValue {
 
   bool exists() const { return json_ != nullptr; }
   const std::string& path() const { return path_; }  // "accessors[3].count"
-  // A member of an object; missing members, also of missing values, do not exist.
+  // Returns a member of an object; missing members, also of missing values, do not exist.
   GltfValue operator[](std::string_view member) const;
-  // Of the members of an object; none if it is not one.
+  // Returns the names of the members of an object; empty if it is not an object.
   std::vector<std::string> names() const;
-  // An element of an array: i < size().
+  // Returns an element of an array, i < size().
   GltfValue operator[](std::size_t i) const;
-  // Elements of an array; 0 if it does not exist.
+  // Returns the number of elements of an array; 0 if it does not exist.
   std::size_t size() const;
 
-  // Typed values. If the value does not exist: `absent` if given, otherwise an error.
+  // Return a typed value. If it does not exist: `absent` if given, otherwise an error.
   std::uint64_t integer(Range range, std::optional<std::uint64_t> absent = {}) const;
   bool boolean(bool absent) const;
   std::string text(const std::optional<std::string>& absent = {}) const;
-  // Exactly `count` numbers; `absent` if it does not exist.
+  // Returns exactly `count` numbers; `absent` if the value does not exist.
   std::vector<double> numbers(std::size_t count, const std::vector<double>& absent) const;
-  // An index below `count`, the size of the array `of`.
+  // Returns an index below `count`, the size of the array `of`.
   std::uint32_t index(std::size_t count, const char* of) const;
   std::optional<std::uint32_t> index_if_any(std::size_t count, const char* of) const;
 
@@ -80,10 +80,11 @@ class GltfValue {
   GltfErrors* errors_;
 };
 
-// A member of what may be no object, where that is not an error; null: there is none.
+// Returns a member of a value that may not be an object, without an error; null: no such
+// member.
 const nlohmann::json& gltf_member(const nlohmann::json& value, const char* key);
 
-// In double quotes, as in JSON; long ones are shortened.
+// Returns the text in double quotes, as in JSON; long ones are shortened.
 std::string gltf_quoted(const std::string& text);
 
 }  // namespace rlpc

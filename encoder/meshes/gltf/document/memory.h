@@ -14,7 +14,8 @@ class GltfMemory {
   GltfMemory(std::uint64_t max_bytes, GltfErrors& errors)
       : max_bytes_(max_bytes), errors_(errors) {}
 
-  // False, with an error that names the place, if the limit would be exceeded.
+  // Counts the bytes. Returns false, with an error that names the place, if they would exceed
+  // the limit.
   bool take(const std::string& place, std::uint64_t bytes) {
     if (bytes <= max_bytes_ - taken_) {
       taken_ += bytes;

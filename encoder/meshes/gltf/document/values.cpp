@@ -23,7 +23,8 @@ std::uint32_t load_unsigned(GltfComponent component, const char* bytes) {
   return value;
 }
 
-// Section 3.6.2.2 of glTF 2.0: a normalised integer is a fraction of the largest of its type.
+// Loads a number (glTF 2.0, 3.6.2.2): a normalised integer is a fraction of the largest of its
+// type.
 float load_float(const GltfAccessor& accessor, const char* bytes) {
   const auto scaled = [&](int value, int largest) {
     if (!accessor.normalized) return static_cast<float>(value);
@@ -79,7 +80,7 @@ bool GltfValues::has_float_type(std::uint32_t accessor, std::string_view type,
 
 bool GltfValues::take(std::uint32_t accessor, std::uint64_t elements) {
   const GltfAccessor& a = accessors_[accessor];
-  // Checked first, as it determines the number of bytes.
+  // Check this first, as it determines the number of bytes.
   const auto missing = [&](const GltfRange& range) {
     return !buffers_.available(range.buffer);
   };

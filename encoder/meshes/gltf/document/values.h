@@ -14,7 +14,7 @@
 
 namespace rlpc {
 
-// The displacement of a vertex by a target.
+// Displacement of a vertex by a target.
 struct GltfDelta {
   std::uint32_t vertex = 0;
   std::array<float, 3> move{};
@@ -25,22 +25,22 @@ class GltfValues {
  public:
   enum class Integers : std::uint8_t { kNo, kToo };
 
-  // In total, at most `spare_values` values are read, plus 16 per byte present: a small
-  // document can neither claim much nor repeat the same data many times.
+  // Limits the values read to `spare_values` plus 16 per byte present: a small document can
+  // neither claim much nor repeat the same data many times.
   GltfValues(const std::vector<GltfAccessor>& accessors, GltfBuffers& buffers,
              std::uint64_t spare_values, GltfMemory& memory, GltfErrors& errors);
 
   const GltfAccessor& accessor(std::uint32_t i) const { return accessors_[i]; }
-  // To count the memory of data built from values.
+  // Counts the memory of data built from values.
   GltfMemory& memory() { return memory_; }
 
-  // [count][width]; integers become floats, exactly unless normalised.
+  // Returns [count][width]; integers become floats, exactly unless normalised.
   std::vector<float> floats(std::uint32_t accessor, std::string_view type, Integers integers);
-  // [count][width], unsigned.
+  // Returns [count][width], unsigned.
   std::vector<std::uint32_t> integers(std::uint32_t accessor, std::string_view type);
-  // The non-zero elements of a VEC3, in ascending order of vertices.
+  // Returns the non-zero elements of a VEC3, in ascending order of vertices.
   std::vector<GltfDelta> deltas(std::uint32_t accessor);
-  // The elements of a MAT4, whose last row is taken as 0, 0, 0, 1.
+  // Returns the elements of a MAT4, whose last row is taken as 0, 0, 0, 1.
   std::vector<Affine> matrices(std::uint32_t accessor);
 
  private:
@@ -65,7 +65,7 @@ class GltfValues {
   GltfErrors& errors_;
 };
 
-// "accessors[3]"
+// Returns "accessors[3]".
 std::string gltf_accessor_path(std::uint32_t accessor);
 
 }  // namespace rlpc

@@ -13,8 +13,8 @@
 namespace rlpc {
 namespace {
 
-// Mean squared spatial prediction residual of each component: the difference between the centre
-// vertex of a patch and the mean of the vertices around it.
+// Returns the mean squared spatial prediction residual of each component: the difference
+// between the centre vertex of a patch and the mean of the vertices around it.
 std::vector<double> differences(const BoneSample& sample, const PrincipalComponents& pc) {
   const std::size_t count = pc.spatial.size();
   std::vector<double> sum(count, 0.0);
@@ -80,11 +80,11 @@ std::vector<double> unsteadiness(const SpanFrames& frames) {
 }
 
 // The more vertices follow a bone, the finer its steps are. Each of the six values of a pose
-// takes half a bit per doubling of the square of what prediction leaves, relative to the error
-// of its quantiser, step^2 / 12.
+// takes half a bit per doubling of the squared prediction residual, relative to the error of
+// its quantiser, step^2 / 12.
 double expected_bone_bits(const std::vector<double>& unsteady, const SpanFrames& frames,
                           std::size_t num_bones, double step) {
-  constexpr double kValuesPerPose = 6.0;  // fixed: of a rotation and an origin
+  constexpr double kValuesPerPose = 6.0;  // fixed: a rotation and an origin
   if (unsteady.empty()) return 0.0;
   const double followers = frames.num_vertices / static_cast<double>(num_bones);
   const double scale = std::sqrt(12.0 * followers) / step;

@@ -10,26 +10,26 @@
 
 namespace rlpc {
 
-// The principal components of the residuals of a whole GOF, as expected from a sample.
+// Principal components of the residuals of a whole GOF, as expected from a sample.
 struct ResidualSpectrum {
   std::vector<double> energy;     // squared grid units, descending
-  std::vector<double> predicted;  // mean square that prediction leaves of a spatial factor
+  std::vector<double> predicted;  // mean square of the prediction residual of a spatial factor
 };
 
 // residuals: [vertex of the sample][3 * frame of the sample], grid units
 ResidualSpectrum residual_spectrum(const BoneSample& sample, std::vector<double> residuals,
                                    std::uint32_t num_vertices, std::uint32_t num_frames);
 
-// Expected Lagrangian cost of trajectories for the residuals. step: of the quantiser, in grid
-// units.
+// Returns the expected Lagrangian cost of trajectories for the residuals. step: quantiser step,
+// grid units.
 double expected_cost(const ResidualSpectrum& spectrum, std::uint32_t num_vertices,
                      std::uint32_t num_frames, double step);
 
-// Distances, in grid units, between the positions of a sample of vertices and their linear
-// extrapolation from the two frames before; for each frame except the first.
+// Returns distances, in grid units, between the positions of a sample of vertices and their
+// linear extrapolation from the two frames before, for each frame except the first.
 std::vector<double> unsteadiness(const SpanFrames& frames);
 
-// Expected bits of the pivot and of all poses of one bone.
+// Returns the expected bits of the pivot and of all poses of one bone.
 //
 //   unsteady   unsteadiness() of the frames
 //   num_bones  number of bones in the GOF, at least 1

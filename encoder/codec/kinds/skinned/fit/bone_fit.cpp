@@ -15,9 +15,9 @@ namespace rlpc {
 namespace {
 
 // Bits of one influence: its weight, and the flag that it is present.
-constexpr double kInfluenceBits = 7.0;  // fixed: those of the usual weight_bits, and one
+constexpr double kInfluenceBits = 7.0;  // fixed: the usual weight_bits, and one
 
-// At most `most` evenly spaced frames, including the first and the last.
+// Returns at most `most` evenly spaced frames, including the first and the last.
 std::vector<std::uint32_t> sample_frames(std::uint32_t num_frames, std::uint32_t most) {
   const std::uint32_t count = std::min(num_frames, most);
   std::vector<std::uint32_t> chosen;
@@ -58,7 +58,7 @@ Neighbours neighbours_of(std::uint32_t num_vertices, std::span<const Triangle> t
   return result;
 }
 
-// A vertex, then its neighbours, then the neighbours of these if the first ring is small.
+// Returns a vertex, then its neighbours, then their neighbours if the first ring is small.
 std::vector<std::uint32_t> patch_around(const Neighbours& neighbours, std::uint32_t vertex) {
   // tuned (off: 1): Patches of fewer vertices than this are extended by a second ring. The
   // motion of too small a patch is not determined well enough to seed a bone.
@@ -128,7 +128,7 @@ BoneFit::BoneFit(const SpanFrames& frames, std::span<const Triangle> triangles,
       sample_(sample_of(triangles)),
       solver_(sample_, options.max_influences) {}
 
-// A position relative to the centre of all vertices in the frame.
+// Returns a position relative to the centre of all vertices in the frame.
 Vec3d BoneFit::centred(std::uint32_t frame, std::uint32_t vertex) const {
   const double* p = frames_.at(frame, vertex);
   return Vec3d(p[0], p[1], p[2]) - centre_[frame];
@@ -138,7 +138,7 @@ void BoneFit::append_trajectory(std::uint32_t vertex, std::vector<Vec3d>& to) co
   for (const std::uint32_t f : chosen_) to.push_back(centred(f, vertex));
 }
 
-// All vertices or, in large meshes, the patches around evenly spaced vertices.
+// Samples all vertices or, in large meshes, the patches around evenly spaced vertices.
 BoneSample BoneFit::sample_of(std::span<const Triangle> triangles) const {
   constexpr std::uint32_t kPatchSize = 7;  // fixed: vertices of a regular one
   const std::uint32_t n = frames_.num_vertices;
@@ -166,7 +166,8 @@ BoneSample BoneFit::sample_of(std::span<const Triangle> triangles) const {
   return sample;
 }
 
-// The Lagrangian cost of the bits of one unpinned bone, as a squared error over all frames.
+// Returns the Lagrangian cost of the bits of one unpinned bone, as a squared error over all
+// frames.
 double BoneFit::cost_of_bone(std::size_t num_bones, double step) const {
   if (step == 0.0) return 0.0;  // exact fit: bones are free
   return lambda(step) * expected_bone_bits(unsteady_, frames_, num_bones, step);

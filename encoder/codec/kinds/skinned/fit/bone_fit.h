@@ -43,26 +43,27 @@ class BoneFit {
   bool grow(std::size_t num_bones) { return solver_.grow(num_bones); }
   // Replaces bones by more useful ones. Takes about as long as grow().
   void settle() { solver_.exchange_bones(options_.exchanges); }
-  // The bones as they are, to return to.
+  // Returns a copy of the bones for return_to().
   BoneSolver state() const { return solver_; }
   void return_to(const BoneSolver& state) { solver_.take(state); }
-  // What the bones of a state leave, for expected_cost(); and a single one that only
-  // translates, with the centre of the vertices.
+  // Return the residuals of the bones of a state, for expected_cost(); and of a single bone
+  // that only translates, with the centre of the vertices.
   ResidualSpectrum spectrum(const BoneSolver& state) const;
   ResidualSpectrum translation_spectrum() const;
-  // Expected Lagrangian cost of the GOF with the bones of a state, without rest positions
-  // (bone_estimate.h). step: of the quantiser, in grid units.
+  // Returns the expected Lagrangian cost of the GOF with the bones of a state, without rest
+  // positions (bone_estimate.h). step: quantiser step, grid units.
   double expected_cost(const BoneSolver& state, const ResidualSpectrum& spectrum,
                        double step) const;
-  // The sum of squared distances of all vertices from the centres of their frames, about.
+  // Returns about the sum of squared distances of all vertices from the centres of their
+  // frames.
   double squared_spread() const;
-  // RMS error of a vertex position in the sample, grid units.
+  // Returns the RMS error of a vertex position in the sample, grid units.
   double rms_error() const;
   std::size_t num_bones() const { return solver_.motions().size(); }
 
-  // The rig of all frames, without bones that save less than they cost. Bone 0 is the only
-  // root. The weights of a vertex are in descending order; quaternions keep their sign from
-  // frame to frame.
+  // Returns the rig of all frames, without bones that save less than they cost. Bone 0 is the
+  // only root. The weights of a vertex are in descending order; quaternions keep their sign
+  // from frame to frame.
   //
   //   max_influences  maximum bones per vertex, 1 to 4
   //   step            quantiser step, grid units; 0: fit as precisely as possible

@@ -113,7 +113,7 @@ double distance(const Point& a, const Point& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-// The position of a point, given in rest coordinates, that moves with a bone.
+// Returns the position of a point, given in rest coordinates, that moves with a bone.
 Point carried(const Rig& fit, int bone, std::uint32_t frame, const Point& point) {
   Rig one;
   one.bones = {fit.bones[static_cast<std::size_t>(bone)]};

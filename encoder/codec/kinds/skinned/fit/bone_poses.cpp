@@ -92,7 +92,7 @@ namespace {
 
 using Vector = Eigen::Matrix<double, 6, 1>;  // a rotation vector and a translation
 
-// The sum of u x v over pairs (u, v), where k is the sum of v u^T.
+// Returns the sum of u x v over pairs (u, v), where k is the sum of v u^T.
 Vec3d curl(const Eigen::Matrix3d& k) {
   return {k(2, 1) - k(1, 2), k(0, 2) - k(2, 0), k(1, 0) - k(0, 1)};
 }
@@ -103,8 +103,9 @@ Eigen::Matrix3d cross_matrix(const Vec3d& a) {
   return m;
 }
 
-// Sum over the vertices of w_b w_c J_b^T J_c. J = (-[R p]x, 1) is the derivative of the
-// position R p + t with respect to a rotation vector, applied after R, and the translation t.
+// Returns the sum over the vertices of w_b w_c J_b^T J_c. J = (-[R p]x, 1) is the derivative of
+// the position R p + t with respect to a rotation vector, applied after R, and the translation
+// t.
 Eigen::Matrix<double, 6, 6> coupling(const Eigen::Matrix4d& moments, const Eigen::Matrix3d& rb,
                                      const Eigen::Matrix3d& rc) {
   const Eigen::Matrix3d n = rb * moments.topLeftCorner<3, 3>() * rc.transpose();
@@ -124,7 +125,7 @@ class StepEquations {
  public:
   StepEquations(const SkinMoments& moments, std::span<const Motion> motions)
       : moments_(moments) {
-    constexpr double kDamping = 1e-3;  // fixed: of the diagonal
+    constexpr double kDamping = 1e-3;  // fixed: part of the diagonal
     for (std::size_t b = 0; b < motions.size(); ++b) {
       first_.push_back(blocks_.size());
       for (const std::size_t c : moments.sharing(b)) {
@@ -138,9 +139,9 @@ class StepEquations {
     }
   }
 
-  // By conjugate gradients, preconditioned with the inverses of the diagonal blocks.
+  // Solves by conjugate gradients, preconditioned with the inverses of the diagonal blocks.
   std::vector<Vector> solve(std::vector<Vector> left) const {
-    constexpr int kMost = 30;            // fixed: of steps; usually ten are enough
+    constexpr int kMost = 30;            // fixed: steps; usually ten are enough
     constexpr double kLeastPart = 1e-6;  // fixed: squared; another Gauss-Newton step follows
     std::vector<Vector> x(left.size(), Vector::Zero());
     std::vector<Vector> near = times_inverse(left);
@@ -167,7 +168,7 @@ class StepEquations {
  private:
   using Block = Eigen::Matrix<double, 6, 6>;
 
-  // Unknowns without a pivot stay 0.
+  // Adds the inverse of a block; unknowns without a pivot stay 0.
   void add_inverse(const Block& block) {
     inverse_.push_back(block.ldlt().solve(Block::Identity()));
   }
@@ -191,9 +192,9 @@ class StepEquations {
   }
 
   const SkinMoments& moments_;
-  std::vector<std::size_t> first_;  // [bone], of its blocks
-  std::vector<Block> blocks_;       // of each bone, with those of SkinMoments::sharing()
-  std::vector<Block> inverse_;      // [bone], of its own block
+  std::vector<std::size_t> first_;  // [bone], first of its blocks
+  std::vector<Block> blocks_;       // bone by bone, with those of SkinMoments::sharing()
+  std::vector<Block> inverse_;      // [bone], inverse of its own block
 };
 
 }  // namespace

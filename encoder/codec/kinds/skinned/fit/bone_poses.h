@@ -19,7 +19,7 @@ class SkinMoments {
   void add(const Vec3d& rest, std::span<const RigWeight> weights);
 
   std::size_t num_bones() const { return num_bones_; }
-  // The bones with which a bone shares vertices, itself included, ascending.
+  // Returns the bones with which a bone shares vertices, itself included, ascending.
   const std::vector<std::size_t>& sharing(std::size_t bone) const { return sharing_[bone]; }
   const Eigen::Matrix4d& block(std::size_t a, std::size_t b) const {
     return block_[a * num_bones_ + b];
@@ -49,7 +49,7 @@ class PoseTargets {
 
  private:
   std::size_t num_bones_;
-  std::size_t values_;       // of a trajectory
+  std::size_t values_;       // values of a trajectory
   std::vector<double> sum_;  // [bone][column][frame][3]
 };
 
@@ -63,7 +63,8 @@ void refine_poses(const SkinMoments& moments, std::span<const Motion> targets,
 void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
                  std::vector<Motion>& motions);
 
-// Both in turn, until the motions have converged. They may start from those of a frame nearby.
+// Calls both in turn until the motions have converged. They may start from those of a frame
+// nearby.
 void fit_poses(const SkinMoments& moments, std::span<const Motion> targets,
                std::vector<Motion>& motions);
 

@@ -156,7 +156,7 @@ TEST(RefinePoses, MovesBonesToTheirVertices) {
   EXPECT_EQ(motions[1], identity_motion());
 }
 
-// For random targets and at any distance from the solution.
+// Holds for random targets and at any distance from the solution.
 TEST(RefinePoses, NeverRaisesTheError) {
   RandomPoints random(1);
   for (int i = 0; i < 30; ++i) {
@@ -181,7 +181,7 @@ TEST(RefinePoses, NeverRaisesTheError) {
   }
 }
 
-// The Gauss-Newton step computed from the vertices, with derivatives by finite differences. The
+// Computes the Gauss-Newton step from the vertices, with derivatives by finite differences. The
 // parameters of a bone are a rotation vector, applied after R, and the translation.
 std::vector<Motion> step_by_differences(const Skin& skin, const std::vector<Motion>& motions) {
   constexpr double kDelta = 1e-6;
@@ -277,7 +277,7 @@ TEST(SolvePoses, TranslatesASingleBone) {
   EXPECT_LT((motions[0].col(3) - Vec3d(10, 20, -30)).norm(), 0.05);  // damped
 }
 
-// Ambiguous cases: rotation about the line of all vertices, or two bones with the same
+// Covers ambiguous cases: rotation about the line of all vertices, or two bones with the same
 // vertices.
 TEST(SolvePoses, LowersTheErrorOfDegenerateBones) {
   RandomPoints random(4);

@@ -90,7 +90,7 @@ void BoneSolver::find_patch_errors() {
   });
 }
 
-// Adds at most `count` bones; returns how many were added.
+// Adds at most `count` bones. Returns the number added.
 std::size_t BoneSolver::add_bones(std::size_t count, SkinSums& sums) {
   if (patch_error_.empty()) find_patch_errors();
   std::vector<double> error(weights_.size());
@@ -110,8 +110,8 @@ std::size_t BoneSolver::add_bones(std::size_t count, SkinSums& sums) {
   return added;
 }
 
-// Disjoint patches in descending order of how much a rigid motion of their own would lower
-// their error.
+// Returns disjoint patches, ordered by how much a rigid motion of their own would lower their
+// error.
 std::vector<std::size_t> BoneSolver::poorly_explained_patches(
     std::span<const double> error) const {
   // tuned (off: 1): Patches of vertices whose motion is tried for each new bone. The best patch
@@ -144,8 +144,8 @@ std::vector<std::size_t> BoneSolver::poorly_explained_patches(
   return result;
 }
 
-// The rigid motions of patches. Each is refitted to all vertices of the sample that follow it
-// about as closely as the patch itself.
+// Returns the rigid motions of patches. Each is refitted to all vertices of the sample that
+// follow it about as closely as the patch itself.
 std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
     std::span<const std::size_t> patches) const {
   constexpr double kClose = 2.0 * 2.0;  // fixed: up to twice as far off as the patch itself
@@ -156,7 +156,7 @@ std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
     cores.push_back(sample_.patches[patch]);
     result.push_back({patch, {}, std::vector<double>(sample_.num_vertices())});
   }
-  std::vector<std::size_t> open(patches.size());  // those whose core has changed
+  std::vector<std::size_t> open(patches.size());  // patches whose core has changed
   std::iota(open.begin(), open.end(), std::size_t{0});
   for (int i = 0; i < kRounds && !open.empty(); ++i) {
     BoneMotions motions(open.size());
@@ -184,7 +184,7 @@ std::vector<BoneSolver::PatchMotion> BoneSolver::patch_motions(
   return result;
 }
 
-// The patch motion that saves the most squared error.
+// Returns the patch motion that saves the most squared error.
 BoneSolver::NewBone BoneSolver::best_new_bone(std::span<const double> error) {
   const std::vector<std::size_t> patches = poorly_explained_patches(error);
   const auto is_known = [&](std::size_t patch) {
@@ -262,7 +262,7 @@ void BoneSolver::offer_last_bone(const SkinSums& sums) {
   });
 }
 
-// The place of the candidate with the largest error of those that the vertex does not follow.
+// Returns the candidate with the largest error among those that the vertex does not follow.
 std::size_t BoneSolver::farthest_candidate(std::size_t v) const {
   const std::vector<RigWeight>& weights = weights_[v].weights;
   std::size_t farthest = 0;
@@ -304,7 +304,7 @@ void BoneSolver::improve_motions() {
   const std::size_t n = motions_.size();
   SkinMoments moments(n);
   for (std::size_t v = 0; v < rest_.size(); ++v) moments.add(rest_[v], weights_[v].weights);
-  constexpr std::size_t kFrames = 16;  // fixed: of a pass
+  constexpr std::size_t kFrames = 16;  // fixed: frames of a pass
   for_ranges(sample_.num_frames, kFrames, [&](std::size_t first, std::size_t end) {
     PoseTargets targets(n, end - first);
     for (std::size_t v = 0; v < rest_.size(); ++v) {
@@ -315,7 +315,7 @@ void BoneSolver::improve_motions() {
     for (std::size_t f = first; f < end; ++f) {
       const std::vector<Motion> wanted = targets.of_frame(f - first);
       for (std::size_t b = 0; b < n; ++b) frame[b] = motions_[b][f];
-      // Twice: bones that share vertices follow each other.
+      // Runs twice, as bones that share vertices follow each other.
       refine_poses(moments, wanted, frame);
       refine_poses(moments, wanted, frame);
       for (std::size_t b = 0; b < n; ++b) motions_[b][f] = frame[b];
@@ -323,7 +323,7 @@ void BoneSolver::improve_motions() {
   });
 }
 
-// The increase of the squared error of a vertex if it can no longer follow a bone.
+// Returns the increase of the squared error of a vertex if it can no longer follow a bone.
 double BoneSolver::loss_without(std::size_t v, std::uint32_t bone) const {
   const std::size_t count = candidates_[v].size();
   if (count < 2) return 0.0;
@@ -342,7 +342,7 @@ double BoneSolver::loss_without(std::size_t v, std::uint32_t bone) const {
   return std::max(without - weights_[v].error, 0.0);
 }
 
-// [bone], the increase of the squared error if the bone is removed.
+// Returns [bone]: the increase of the squared error if the bone is removed.
 std::vector<double> BoneSolver::losses() const {
   std::vector<std::array<double, kMaxExtraBones>> of_vertex(rest_.size());
   for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
@@ -411,8 +411,8 @@ std::vector<double> BoneSolver::residuals() const {
   return result;
 }
 
-// Replaces the `count` least useful bones by new ones; undone and false if that does not lower
-// the error.
+// Replaces the `count` least useful bones by new ones. Undoes that and returns false if it does
+// not lower the error.
 bool BoneSolver::exchange(std::size_t count, SkinSums& sums) {
   const BoneSolver before = *this;
   SkinSums sums_before = sums;

@@ -18,8 +18,8 @@ struct BoneSample {
   std::vector<Vec3d> positions;                       // [vertex][frame]
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;  // fixed: no index
   std::vector<std::uint32_t> place;  // [num_vertices of the GOF]: index in the sample, or kNone
-  // Small patches of the mesh, each a centre vertex, which is first, and those around it. New
-  // bones start from patches that move rigidly.
+  // Small patches of the mesh: a centre vertex, which comes first, and the vertices around it.
+  // New bones start from patches that move rigidly.
   std::vector<std::vector<std::uint32_t>> patches;
 
   std::size_t num_vertices() const { return positions.size() / num_frames; }
@@ -37,10 +37,10 @@ struct BoneSample {
 // settling three.
 inline constexpr int kRounds = 3;
 
-// Bones come in one at a time: each takes the motion of a patch that is rigid but ill explained
-// by the bones before it. Then weights and motions are improved in turn, and the bones that are
-// missed least are exchanged for new ones. Rest positions stay those of the first frame, in
-// which rigid parts are rigid, until all bones are there.
+// Adds bones one at a time: each takes the motion of a patch that is rigid but ill explained by
+// the bones before it. Then weights and motions are improved in turn, and the least useful
+// bones are exchanged for new ones. Rest positions stay those of the first frame, in which
+// rigid parts are rigid, until all bones have been added.
 class BoneSolver {
  public:
   // Starts with one bone. Keeps a reference to the sample.
@@ -60,18 +60,18 @@ class BoneSolver {
   void remove_worthless_bones(double worth);
 
   double error() const;  // squared, over the sample
-  // Mean number of bones per vertex beyond the first.
+  // Returns the mean number of bones per vertex beyond the first.
   double mean_influences() const;
-  // The residual of bone motion: [vertex][3 * frame].
+  // Returns the residual of bone motion, [vertex][3 * frame].
   std::vector<double> residuals() const;
 
   const BoneMotions& motions() const { return motions_; }
-  // The rest position of a vertex of the sample.
+  // Returns the rest position of a vertex of the sample.
   const Vec3d& rest(std::size_t vertex) const { return rest_[vertex]; }
 
  private:
-  // The functions below that take `sums` expect those of the current motions and keep them up
-  // to date.
+  // The functions below that take `sums` expect sums of the current motions and keep them up to
+  // date.
   void find_patch_errors();
   bool exchange(std::size_t count, SkinSums& sums);
   std::size_t add_bones(std::size_t count, SkinSums& sums);
@@ -110,7 +110,7 @@ class BoneSolver {
   BoneMotions motions_;
   std::vector<Vec3d> rest_;
   std::vector<BoneWeights> weights_;  // [vertex]; here `bone` is an index of motions_
-  std::vector<std::vector<std::size_t>> candidates_;  // [vertex], bones that it may follow
+  std::vector<std::vector<std::size_t>> candidates_;  // [vertex]: bones that it may follow
   std::vector<SkinSums::Gram> gram_;                  // [vertex], of its candidates
 };
 

@@ -16,8 +16,8 @@ struct Joint {
   double cost = 0.0;  // summed over frames: squared gap at the pivot, and relative rotation
 };
 
-// The point that two bones move most alike. If that is ambiguous, as along the axis of a hinge,
-// the point nearest to `expected`.
+// Returns the point that two bones move most alike. If that is ambiguous, as along the axis of
+// a hinge, the point nearest to `expected`.
 Vec3d common_point(const Motions& parent, const Motions& child, const Vec3d& expected) {
   Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
   Vec3d g = Vec3d::Zero();  // relative to the expected point
@@ -62,7 +62,7 @@ Joint joint_between(const SkinMoments& moments, const std::vector<Motions>& moti
 // bone.
 double pin(const Eigen::Matrix4d& moments, const Vec3d& pivot, const Motions& parent,
            Motions& motions) {
-  const Vec3d sum = moments.block<3, 1>(0, 3) - moments(3, 3) * pivot;  // of w^2 (p - pivot)
+  const Vec3d sum = moments.block<3, 1>(0, 3) - moments(3, 3) * pivot;  // w^2 (p - pivot)
   const Eigen::Matrix3d products =
       moments.block<3, 3>(0, 0) - moments.block<3, 1>(0, 3) * pivot.transpose() -
       pivot * moments.block<3, 1>(0, 3).transpose() + moments(3, 3) * pivot * pivot.transpose();

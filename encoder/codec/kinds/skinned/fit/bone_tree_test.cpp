@@ -82,7 +82,7 @@ struct Chain {
     }
     return result;
   }
-  // Squared distances between the vertices of a bone under other motions and under its own.
+  // Returns squared distances between the vertices of a bone under other motions and its own.
   double damage(std::size_t bone, const std::vector<Motion>& other) const {
     double sum = 0.0;
     for (std::size_t f = 0; f < kFrames; ++f) {

@@ -45,7 +45,7 @@ class SparseBlend {
     return {1, {best}, {1.0}, at(best, best)};
   }
 
-  // Bit-exactly solve() of two candidates, the usual case, in a fraction of the time.
+  // Computes solve() for two candidates, the usual case, bit-exactly in a fraction of the time.
   Blend pair(std::size_t first, std::size_t second) const {
     Blend blend{2, {first, second}, {}, 0.0};
     const double own = at(first, first) + regular_;
@@ -72,7 +72,7 @@ class SparseBlend {
     return blend;
   }
 
-  // Optimal weights of the chosen candidates, after removing those with negative weights.
+  // Finds optimal weights of the chosen candidates, after removing those with negative weights.
   void solve(Blend& blend) const {
     for (;;) {
       unconstrained(blend);

@@ -74,8 +74,8 @@ void expect_valid(const Deviations& d, const BoneWeights& found, std::size_t mos
   EXPECT_NEAR(found.error, error_of(d, found.weights), 1e-12 * size) << text(found);
 }
 
-// The lowest error of blends of these candidates, by enumeration with weights in multiples of
-// 1/steps.
+// Returns the lowest error of blends of these candidates, by enumeration with weights in
+// multiples of 1/steps.
 double least_error(const Deviations& d, const std::vector<std::uint32_t>& bones, int steps) {
   double least = std::numeric_limits<double>::infinity();
   std::vector<RigWeight> weights;

@@ -11,7 +11,7 @@ namespace rlpc {
 using Point = std::array<double, 3>;  // grid units
 
 struct RigPose {
-  std::array<double, 4> rotation{1.0, 0.0, 0.0, 0.0};  // from the rest shape; w, x, y, z
+  std::array<double, 4> rotation{1.0, 0.0, 0.0, 0.0};  // relative to the rest shape; w, x, y, z
   Point origin{};                                      // position of the pivot
 };
 

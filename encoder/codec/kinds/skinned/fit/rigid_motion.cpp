@@ -46,9 +46,9 @@ UnitQuaternion nearest_rotation(const Eigen::Matrix3d& h) {
 }
 
 Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& h, const Eigen::Matrix3d& start) {
-  constexpr int kSteps = 2;       // fixed: of Newton, which then has converged
+  constexpr int kSteps = 2;       // fixed: Newton has then converged
   constexpr double kFar = 0.2;    // fixed: radians, where it converges
-  constexpr double kFlat = 1e-6;  // fixed: of the trace: a turn that is hardly determined
+  constexpr double kFlat = 1e-6;  // fixed: part of the trace: a turn that is barely determined
   Eigen::Matrix3d r = start;
   for (int i = 0; i < kSteps; ++i) {
     // Newton step for trace(R^T h). x is a rotation vector applied after R:

@@ -20,11 +20,11 @@ Eigen::Matrix3d rotation_matrix(const UnitQuaternion& unit);
 UnitQuaternion normalised(const UnitQuaternion& q);
 UnitQuaternion rotation_quaternion(const Eigen::Matrix3d& rotation);
 
-// The rotation R that maximises trace(R^T h), where h is the sum of image * original^T. If it
-// is not unique, the one with the smallest angle.
+// Returns the rotation R that maximises trace(R^T h), where h is the sum of image * original^T.
+// If it is not unique, the one with the smallest angle.
 UnitQuaternion nearest_rotation(const Eigen::Matrix3d& h);
 
-// The same, but faster if `start` is close to the result.
+// Returns the same, but faster if `start` is close to the result.
 Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& h, const Eigen::Matrix3d& start);
 
 // Accumulates pairs of a point and its image; motion() minimises the sum of squared distances.
@@ -32,7 +32,7 @@ class MotionFit {
  public:
   void add(const Vec3d& original, const Vec3d& image);
   Motion motion() const;
-  // The same, but faster if the rotation of `start` is close.
+  // Returns the same, but faster if the rotation of `start` is close.
   Motion motion_near(const Motion& start) const;
 
  private:

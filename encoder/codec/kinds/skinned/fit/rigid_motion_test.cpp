@@ -35,7 +35,7 @@ double agreement(const Eigen::Matrix3d& r, const Eigen::Matrix3d& h) {
   return (r.transpose() * h).trace();
 }
 
-// Kabsch's method: singular vectors of h, the last one negated if they make a reflection.
+// Applies Kabsch's method: singular vectors of h, the last one negated if they reflect.
 double best_agreement(const Eigen::Matrix3d& h) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(h, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vec3d& s = svd.singularValues();

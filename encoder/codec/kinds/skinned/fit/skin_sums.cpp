@@ -15,9 +15,9 @@ namespace {
 
 Eigen::Vector4d homogeneous(const Vec3d& p) { return {p(0), p(1), p(2), 1.0}; }
 
-constexpr std::size_t kColumns = 4;  // fixed: of a motion
+constexpr std::size_t kColumns = 4;  // fixed: columns of a motion
 
-// The motions of some bones, interleaved: [frame][3][bone][4].
+// Returns the motions of some bones, interleaved: [frame][3][bone][4].
 std::vector<double> motions_by_frame(std::span<const std::vector<Motion>> motions) {
   const std::size_t columns = kColumns * motions.size();
   const std::size_t num_frames = motions.front().size();
@@ -35,7 +35,7 @@ std::vector<double> motions_by_frame(std::span<const std::vector<Motion>> motion
   return by_frame;
 }
 
-// The 4 x 4 block of two bones in a matrix of `width` columns.
+// Returns the 4 x 4 block of two bones in a matrix of `width` columns.
 Eigen::Matrix4d block_at(std::span<const double> matrix, std::size_t width, std::size_t row,
                          std::size_t column) {
   Eigen::Matrix4d block;

@@ -14,34 +14,34 @@ namespace rlpc {
 using BoneMotions = std::vector<std::vector<Motion>>;  // [bone][frame]
 
 // Sums over the frames of M_a^T M_b for all pairs of bones, and of M_b^T x for all bones and
-// some vertices. The sums of a bone are bit-exactly independent of which other bones there are.
+// some vertices. The sums of a bone do not depend on other bones, to the last bit.
 class SkinSums {
  public:
   // positions: [vertex][frame], with the frames of the motions; kept by reference.
   SkinSums(std::span<const Vec3d> positions, const BoneMotions& motions);
 
-  // Each gives the same sums as the constructor, but faster.
+  // Compute the same sums as the constructor, but faster.
   void set_positions(std::span<const Vec3d> positions);
   void set_motions(const BoneMotions& motions);
-  // The same, but sums of a vertex are only those of some bones: [vertex].
+  // Does the same, but sums for a vertex only over some bones, [vertex].
   void set_motions(const BoneMotions& motions, std::span<const std::vector<std::size_t>> bones);
   void add_bone(const std::vector<Motion>& motion);  // appends a bone
   void remove_bone(std::size_t bone);
 
-  // Squared error of a vertex that follows a single bone.
+  // Returns the squared error of a vertex that follows a single bone.
   double rigid_error(std::size_t vertex, std::size_t bone, const Vec3d& rest) const;
-  // The optimal rest position of a vertex that follows only its best bone.
+  // Returns the optimal rest position of a vertex that follows only its best bone.
   Vec3d single_rest(std::size_t vertex) const;
-  // The `count` bones with the smallest rigid_error(), in ascending order.
+  // Returns the `count` bones with the smallest rigid_error(), in ascending order.
   std::vector<std::size_t> closest_bones(std::size_t vertex, const Vec3d& rest,
                                          std::size_t count) const;
 
-  // Gram matrix of the errors of a vertex at `rest` under each of some bones.
+  // Returns the Gram matrix of the errors of a vertex at `rest` under each of some bones.
   static constexpr std::size_t kMaxCandidates = 8;  // fixed: size of arrays
   using Gram = std::array<double, kMaxCandidates * kMaxCandidates>;
   Gram gram(std::size_t vertex, std::span<const std::size_t> bones, const Vec3d& rest) const;
 
-  // The rest position with the smallest error, regularised weakly towards `before`.
+  // Returns the rest position with the smallest error, regularised weakly towards `before`.
   Vec3d fit_rest(std::size_t vertex, const Vec3d& before,
                  std::span<const RigWeight> weights) const;
 

@@ -1,4 +1,4 @@
-// A shared rig that later spans may use, exactly as it was coded.
+// Shared rig that later spans may use, exactly as it was coded.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// The motion that a vertex takes from its bones, and what is left of its own after that
-// (inverse of 8.14.3, in floating point).
+// Motion that a vertex takes from its bones, and its residual (inverse of 8.14.3, in floating
+// point).
 #pragma once
 
 #include <array>
@@ -23,10 +23,10 @@ struct MeanMotion {
   Point shift{};
 };
 
-// The motion of a decoded bone in some of its frames.
+// Returns the motion of a decoded bone in some of its frames.
 std::vector<MeanMotion> motions_of(const BoneMotion& bone, std::size_t first,
                                    std::size_t count);
-// The same of a bone that is not quantised. pivot: 1/16 grid units.
+// Returns the motion of a bone that is not quantised. pivot: 1/16 grid units.
 std::vector<MeanMotion> motions_of(const Vec3i& pivot, std::span<const WantedPose> poses);
 
 using MotionsOfBones = std::vector<std::vector<MeanMotion>>;  // [bone][frame]
@@ -36,13 +36,13 @@ class MeanMotions {
  public:
   // Keeps a reference to the motions.
   explicit MeanMotions(const MotionsOfBones& motions) : motions_(motions) {}
-  // The weighted mean of the motions of the bones of a vertex, [frame]; valid until the next
-  // call.
+  // Returns the weighted mean of the motions of the bones of a vertex, [frame]; valid until the
+  // next call.
   std::span<const MeanMotion> of(const Influences& influences, int weight_bits);
 
  private:
   const MotionsOfBones& motions_;
-  std::vector<MeanMotion> mean_;  // [frame], of vertices with influences mean_of_
+  std::vector<MeanMotion> mean_;  // [frame], for vertices with influences mean_of_
   Influences mean_of_;
 };
 
@@ -55,7 +55,7 @@ void write_displacement(const SpanFrames& frames, std::span<const std::uint32_t>
                         std::uint32_t v, std::span<const MeanMotion> motion, const Point& rest,
                         double* row);
 
-// `count` consecutive numbers.
+// Returns `count` consecutive numbers.
 std::vector<std::uint32_t> numbers_from(std::uint32_t first, std::uint32_t count);
 
 }  // namespace rlpc

@@ -20,10 +20,10 @@ namespace rlpc {
 namespace {
 
 // tuned (off: 1): Quantiser step of a layer relative to that of the next finer layer. Vertices
-// of coarse layers predict those of finer ones, so that their errors spread.
+// of coarse layers predict those of finer ones, so their errors spread.
 constexpr double kFinerLayer = 0.9;
 // tuned (off: 1): Smallest quantiser step of a layer relative to that of the finest layer.
-// Coarser layers have so few vertices that their errors hardly count.
+// Coarser layers have so few vertices that their errors barely count.
 constexpr double kFinestLayer = 0.4;
 constexpr std::size_t kTogether = 32;  // fixed: vertices of a pass
 
@@ -132,8 +132,8 @@ class SkinnedAnalyser {
   }
 
  private:
-  // The sum of the squared weights of a bone, and that of the squared weights times the squared
-  // distances from its pivot.
+  // Returns the sum of the squared weights of a bone, and of the squared weights times the
+  // squared distances from its pivot.
   std::pair<double, double> mass_and_moment(std::size_t b) const {
     double mass = 0.0;
     double moment = 0.0;
@@ -187,7 +187,7 @@ class SkinnedAnalyser {
     found_.bones = std::move(bones.motions());
   }
 
-  // The least-squares rest position for the decoded bones.
+  // Returns the least-squares rest position for the decoded bones.
   Point fit_rest(std::uint32_t v, MeanMotions& motions) const {
     const auto mean = motions.of(found_.rig.influences[v], found_.rig.weight_bits);
     SmallSystem<3> m;
@@ -206,7 +206,7 @@ class SkinnedAnalyser {
     return rest.is_unique ? rest.x : rig_.rest[v];
   }
 
-  // Residuals by layers, of the wanted positions; gives the values as decoded.
+  // Codes the wanted positions by layers. Returns the values as decoded.
   std::vector<std::int32_t> code_rest_in_layers(std::span<const Point> wanted) {
     SharedRig& rig = found_.rig;
     std::vector<std::int32_t> values(kRestFactors * wanted.size());
@@ -278,7 +278,7 @@ class SkinnedAnalyser {
     }
   }
 
-  // The residual of bone motion: frames minus skinned rest positions.
+  // Returns the residual of bone motion: frames minus skinned rest positions.
   TrajectoryRows displacement() {
     const std::size_t width = 3 * std::size_t{frames_.num_frames};
     return {frames_.num_vertices, width,
@@ -297,7 +297,7 @@ class SkinnedAnalyser {
             }};
   }
 
-  // As decoded, in grid units.
+  // Returns the decoded rest position, in grid units.
   Point rest_of(std::uint32_t v) const {
     Point rest;
     for (std::size_t c = 0; c < 3; ++c) rest[c] = found_.rest[c][v] / kPointScale;

@@ -31,13 +31,13 @@ struct SkinnedSettings {
   int outer_weight = kOuterRing;
   int outer_scale = kOuterRing;
   std::uint32_t num_adaptive_factors = 0;   // maximum (8.15)
-  RestTools rest = RestTools::kPrediction;  // at most
+  RestTools rest = RestTools::kPrediction;  // tools allowed
   bool layer_steps = true;                  // finer steps in coarser layers
-  int track_levels = 0;                     // of hierarchical tracks; 0: there are none
-  int temporal_layers = 1;                  // of a GOF; at most track_levels + 1
+  int track_levels = 0;                     // 0: tracks are not hierarchical
+  int temporal_layers = 1;                  // at most track_levels + 1
   bool temporal_weights = true;  // transmitted weights besides the fixed predictors of 8.2.2
   Rounding rounding = Rounding::kCheapest;
-  bool draft = false;        // tracks as simply as suffices to compare candidates
+  bool draft = false;        // code tracks only as well as comparing candidates needs
   bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009; else equal distortion
   std::uint32_t component_groups = 0;  // 0: chosen by size
   std::uint32_t layer_groups = 0;      // 0: chosen by size
@@ -46,7 +46,7 @@ struct SkinnedSettings {
   // tuned: Bits of a quantised influence of a bone. Finer weights cost bits at every vertex;
   // coarser ones leave errors where bones meet.
   static constexpr int kWeightBits = 6;
-  // tuned (off: 0): Binary logarithm of the divisor that gives the damping of the geometry
+  // tuned (off: 0): Binary logarithm of the divisor that sets the damping of the geometry
   // weights (8.11): the larger, the less damping; 0 switches these weights off. Damping keeps
   // weights moderate where a vertex lies nearly in line with its neighbours.
   static constexpr int kDampingLog2 = 8;
@@ -64,11 +64,11 @@ struct SkinnedAnalysis {
   std::vector<BoneMotion> bones;                  // as decoded, in all frames
   std::array<std::vector<std::int32_t>, 3> rest;  // as decoded
   ComponentsByRow pc;
-  double step_of_components = 0.0;  // of the analysis that they were first found in
-  std::vector<float> spatial_left;  // of find_spatial_left()
+  double step_of_components = 0.0;  // step of the analysis that found the components
+  std::vector<float> spatial_left;  // from find_spatial_left()
 };
 
-// Chooses all steps such that every coded value adds about the same squared error, step^2 / 12,
+// Chooses all steps so that every coded value adds about the same squared error, step^2 / 12,
 // to the sum over all coordinates of all frames. step: grid units.
 //
 //   before  an analysis of the same rig with other tools, for the same step or one nearby, or

@@ -22,14 +22,15 @@ namespace {
 // Temporal values are scaled so that their step is 2^3 units of the sums, if possible.
 constexpr int kWantedScaleIdx = 56;  // fixed: format
 
-// The frames of a GOF, `first` being that after the GOF before.
+// Returns the frames of a GOF. `first`: the frame after the GOF before.
 std::span<const Vec3i> frames_of(const SkinnedGof& gof, std::span<const Vec3i> values,
                                  std::size_t& first) {
   first += gof.num_frames;
   return values.subspan(first - gof.num_frames, gof.num_frames);
 }
 
-// False if a temporal value exceeds the maximum width; the sums then need fewer fraction bits.
+// Returns false if a temporal value exceeds the maximum width; the sums then need fewer
+// fraction bits.
 bool set_temporal_widths(const std::vector<int>& idx, int fraction_bits,
                          std::span<const SkinnedGof> gofs, TemporalValues& temporal) {
   for (std::size_t l = 0; l < temporal.size(); ++l) {
@@ -79,7 +80,8 @@ struct CodedTrajectories {
   SliceCuts cuts;
 };
 
-// The bits of the spatial factors of the leading components, from what prediction leaves.
+// Returns the expected bits of the spatial factors of the leading components, from prediction
+// residuals.
 double expected_spatial_bits(const SkinnedAnalysis& analysis, std::size_t count, double step) {
   const std::size_t width = analysis.pc.temporal.size();
   const std::size_t places = analysis.spatial_left.size() / width;
@@ -115,7 +117,7 @@ CodedTrajectories code_trajectories(const OrderedMesh& mesh, const SkinnedAnalys
           std::min(settings.num_adaptive_factors, static_cast<std::uint32_t>(count));
     }
     constexpr double kAdaptive =
-        0.42;  // fixed: of the bits, with adaptive weights; an estimate
+        0.42;  // fixed: part of the bits, with adaptive weights; an estimate
     const double bits = expected_spatial_bits(analysis, temporal.num_tried, step) *
                         (rig.weights.num_adaptive_factors > 0 ? kAdaptive : 1.0);
     SliceCuts cuts = choose_slice_cuts(settings, bits, count);

@@ -14,8 +14,7 @@
 
 namespace rlpc {
 
-// Whether at least `count` principal components are worth coding as trajectories. count: above
-// 0.
+// Whether at least `count` (above 0) principal components are worth coding as trajectories.
 bool has_trajectories(std::size_t count, const SkinnedAnalysis& analysis,
                       const SkinnedSettings& settings, double step);
 
@@ -24,11 +23,11 @@ bool has_trajectories(std::size_t count, const SkinnedAnalysis& analysis,
 // estimate, a factor that is almost independent of the step.
 double expected_squared_error(const SkinnedAnalysis& analysis, double step);
 
-// A span as coded: what its GOFs share, and what each has of its own.
+// A span as coded: the rig that its GOFs share, and the tracks of each GOF.
 struct CodedSpan {
   SharedRig rig;
   std::vector<SkinnedGof> gofs;  // bones and trajectories with their motion, nothing else
-  // Of a draft: spatial values as decoded, [num_vertices][trajectory].
+  // Spatial values of a draft, as decoded, [num_vertices][trajectory].
   std::vector<std::int32_t> values = {};
 };
 
@@ -36,9 +35,9 @@ struct CodedSpan {
 CodedSpan code_skinned_span(const OrderedMesh& mesh, const SkinnedAnalysis& analysis,
                             const SkinnedSettings& settings, double step);
 
-// The only GOF of a span, with vertices of its own.
+// Returns the only GOF of a span, with vertices of its own.
 SkinnedGof merge_into_gof(CodedSpan coded);
-// Trajectories that a skinned GOF with a shared rig has besides those of its shared rig.
+// Trajectories that a skinned GOF with a shared rig has besides those of the rig.
 struct LocalGroup {
   std::vector<Trajectory> trajectories;  // empty: none is worth its bits
   std::vector<std::int32_t> residual;    // [num_vertices][trajectory]
@@ -46,7 +45,7 @@ struct LocalGroup {
 
 // Codes principal components as a local component group.
 //
-//   analysis  of a single GOF: what its shared rig leaves; rig: that, without trajectories
+//   analysis  residual of the shared rig in a single GOF; its rig has no trajectories
 //   shared    the shared rig
 LocalGroup code_local_group(const OrderedMesh& mesh, const SkinnedAnalysis& analysis,
                             const RigRecon& shared, SkinnedSettings settings, double step);

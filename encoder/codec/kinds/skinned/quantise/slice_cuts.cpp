@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kBytesOfSlice = 4000.0;  // fixed: slices are a feature; they cost 0.2 %
 
-// The trajectories up to the end of each group are about three times as many as those before
-// it. A group is smaller if it would not leave enough trajectories for the requested number of
-// groups.
+// Returns the ends of groups. The trajectories up to the end of each are about three times as
+// many as those before it. A group is smaller if it would not leave enough trajectories for the
+// requested number of groups.
 std::vector<std::size_t> component_group_ends(std::size_t num_groups, std::size_t requested,
                                               std::size_t count) {
   requested = std::min(requested, count);

@@ -11,17 +11,17 @@
 
 namespace rlpc {
 
-// Where trajectories and layers are divided into groups.
+// Division of trajectories and layers into groups.
 struct SliceCuts {
-  // Ends of the component groups, in trajectories; the last is their number. Empty: there are
-  // none.
+  // Ends of the component groups, in trajectories; the last is their number. Empty: no groups.
   std::vector<std::size_t> group_end;
   std::size_t num_layer_groups = 1;  // maximum
 };
 
-// As many groups as the settings request, otherwise as many as the overhead of slices allows.
+// Makes as many groups as the settings request, otherwise as many as the overhead of slices
+// allows.
 //
-//   bits   of the spatial factors, about
+//   bits   approximate bits of the spatial factors
 //   count  number of trajectories
 SliceCuts choose_slice_cuts(const SkinnedSettings& settings, double bits, std::size_t count);
 

@@ -26,7 +26,7 @@ SpanBones::SpanBones(std::vector<SkinnedGof>& gofs, const TrackOptions& options)
 
 void SpanBones::add(const Bone& bone, std::span<const WantedPose> wanted) {
   BoneMotion motion;
-  BoneMotion parent;  // of the bone, in the frames of a GOF
+  BoneMotion parent;  // motion of the parent in the frames of a GOF
   for (std::size_t g = 0; g < gofs_.size(); ++g) {
     const std::size_t count = gofs_[g].num_frames;
     const std::size_t first = motion.poses.size();

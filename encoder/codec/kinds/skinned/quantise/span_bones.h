@@ -11,7 +11,7 @@
 
 namespace rlpc {
 
-// The GOFs of a span, without bones and trajectories.
+// Returns the GOFs of a span, without bones and trajectories.
 std::vector<SkinnedGof> gofs_of_span(const SpanFrames& frames, int track_levels);
 
 class SpanBones {
@@ -19,9 +19,9 @@ class SpanBones {
   // Keeps a reference to the GOFs, to which it adds bones.
   SpanBones(std::vector<SkinnedGof>& gofs, const TrackOptions& options);
 
-  // Codes the next bone, whose flags, pivot, parent and steps are given; wanted: in all frames.
+  // Codes the next bone, whose flags, pivot, parent and steps are given. wanted: [num_frames].
   void add(const Bone& bone, std::span<const WantedPose> wanted);
-  // The motion of the bones so far as decoded, in all frames of the span.
+  // Returns the motion of the bones so far, as decoded, in all frames of the span.
   std::vector<BoneMotion>& motions() { return motions_; }
 
  private:

@@ -15,7 +15,7 @@ namespace rlpc {
 // Wanted values up to this limit fit their width, however they are rounded.
 inline constexpr double kMostTemporal = 1 << (kTemporalIndexBits - 2);  // fixed: format
 
-// 2^(eighths / 8), as the format has it.
+// Returns 2^(eighths / 8) as the format defines it.
 double power_of_eighths(int eighths);
 
 class SpanTracks {
@@ -29,11 +29,13 @@ class SpanTracks {
     TrackCost cost;
     std::vector<TrackState> after;
   };
-  // wanted [frame]; unit: quantiser step, in that of the values. Does not change the states.
+  // Codes a trajectory without changing the states. wanted [frame]; unit: quantiser step, in
+  // the unit of the values.
   Coded code(std::span<const std::array<double, 3>> wanted, double unit) const;
-  // The trajectory is kept: the next one follows it.
+  // Keeps the trajectory: the next one follows it.
   void follow(Coded& coded) { states_ = std::move(coded.after); }
-  // Its values as decoded, in steps, in all frames; 0 where it does not occur.
+  // Returns the values of a trajectory as decoded, in steps, in all frames; 0 where it does not
+  // occur.
   std::vector<Vec3i> indices(const Coded& coded) const;
   std::size_t num_frames() const { return num_frames_; }
 
@@ -45,9 +47,10 @@ class SpanTracks {
   std::vector<TrackState> states_;  // [GOF]
 };
 
-// Width in bits of a signed number of this magnitude.
+// Returns the width in bits of a signed number of this magnitude.
 int signed_width(std::int64_t magnitude);
-// Sets scale and width of a trajectory in a GOF. False: a value exceeds the maximum width.
+// Sets scale and width of a trajectory in a GOF. Returns false if a value exceeds the maximum
+// width.
 bool set_scale(int scale_idx, std::span<const Vec3i> indices, Trajectory& trajectory);
 
 }  // namespace rlpc

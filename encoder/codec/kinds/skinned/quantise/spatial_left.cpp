@@ -26,8 +26,9 @@ void add_differences(const OrderedMesh& mesh, const ComponentsByRow& pc, std::ui
 
 }  // namespace
 
-// Differences of a vertex and the mean of those that predict it, squared, averaged over the
-// vertex and its ring: residuals are coded by what these are nearby.
+// Returns squared differences between a vertex and the mean of the vertices that predict it,
+// averaged over the vertex and its ring, since contexts of residuals depend on residuals
+// nearby.
 std::vector<float> find_spatial_left(const OrderedMesh& mesh, const ComponentsByRow& pc) {
   const std::size_t width = pc.temporal.size();
   const std::uint32_t n = mesh.num_vertices();

@@ -1,4 +1,4 @@
-// What prediction along the mesh leaves of spatial factors, before these are coded.
+// Estimates the residuals of predicting spatial factors along the mesh, before these are coded.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace rlpc {
 
-// What prediction leaves of the spatial factors near each of some vertices, mean square:
-// [vertex of a sample][component].
+// Returns the mean squared prediction residual of the spatial factors near each of some
+// vertices, [vertex of a sample][component].
 std::vector<float> find_spatial_left(const OrderedMesh& mesh, const ComponentsByRow& pc);
 
 }  // namespace rlpc

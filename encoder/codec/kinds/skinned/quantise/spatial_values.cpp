@@ -46,7 +46,7 @@ class FittedFactors {
   }
 
  private:
-  // [component][trajectory]. Temporal vectors quantised to zero get no factor.
+  // Returns [component][trajectory]. Temporal vectors quantised to zero get no factor.
   std::vector<double> find_mixing(const TemporalValues& temporal) const {
     constexpr double kVanished = 1e-9;  // fixed: rounding
     const std::size_t width = temporal.decoded.front().size();
@@ -77,7 +77,7 @@ class FittedFactors {
   std::vector<double> mixing_;
 };
 
-// The adaptive weights before the first trajectory; none if there are none.
+// Returns the adaptive weights before the first trajectory; none if there are none.
 std::optional<AdaptiveWeights> start_weights(const OrderedMesh& mesh, const SharedRig& rig,
                                              const SkinnedAnalysis& analysis,
                                              const std::optional<GeometryWeights>& weights,
@@ -134,8 +134,8 @@ class SpatialCoder {
   }
 
  private:
-  // Shares passes of a few vertices among threads. Each goes on from the rates before them, so
-  // that few are coded at a time while rates are not settled.
+  // Shares passes of a few vertices among threads. Each pass continues from the rates before
+  // them, so that few vertices are coded at a time while rates are not settled.
   void code_layer(std::span<const std::uint32_t> list, Pass& all) {
     constexpr std::size_t kOfPass = 16;  // fixed: vertices
     constexpr std::size_t kMost = 256;   // fixed: vertices at a time, for as many threads
@@ -182,7 +182,7 @@ class SpatialCoder {
     }
   }
 
-  // predicted: unless weights adapt.
+  // Codes a vertex. predicted: used unless weights adapt.
   void code(std::uint32_t v, std::span<const double> factors,
             std::span<const std::int64_t> predicted, VertexAdaptation* adaptation, Pass& pass) {
     const int layer_step = rig_.layer_step[mesh_.layer_of(v)];
@@ -203,7 +203,7 @@ class SpatialCoder {
     }
   }
 
-  // The residual of the next trajectory; wanted: in steps.
+  // Returns the residual of the next trajectory. wanted: in steps.
   std::int32_t rounded(double wanted, Pass& pass) const {
     if (pass.choice) {
       const VertexResidualChoice::Chosen chosen = pass.choice->next(wanted);
@@ -221,7 +221,7 @@ class SpatialCoder {
   std::size_t count_;
   Rounding rounding_;
   double per_step_;
-  std::size_t num_coded_ = 0;  // vertices
+  std::size_t num_coded_ = 0;  // number of vertices
   SpatialValues result_;
 };
 

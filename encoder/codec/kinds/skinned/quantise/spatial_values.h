@@ -19,12 +19,12 @@ struct SpatialValues {
   double excess = 0.0;  // largest wanted value / largest legal value; above 1 it does not fit
 };
 
-// Spatial values that fit best, in the least-squares sense, with the decoded temporal values.
-// There must be at least one trajectory.
+// Codes the spatial values that, with the decoded temporal values, fit best in the
+// least-squares sense. There must be at least one trajectory.
 //
-//   rig      that of the analysis, with its weight settings
+//   rig        that of the analysis, with its weight settings
 //   group_end  ends of the component groups, in trajectories
-//   shared     the shared rig of a local component group; null: there is none
+//   shared     the shared rig of a local component group; null: no local component group
 //   step       quantiser step, grid units
 SpatialValues code_spatial_values(const OrderedMesh& mesh, const SharedRig& rig,
                                   const SkinnedAnalysis& analysis,

@@ -72,7 +72,7 @@ class TemporalCoder {
     return true;
   }
 
-  // The exponent of the product of both steps, 2^(eighths / 8), which is what the stream codes.
+  // Returns the exponent of the product of both steps, 2^(eighths / 8), which the stream codes.
   int eighths_of(std::size_t l, int least_eighths) const {
     const double error = temporal_error(analysis_.rig);
     const double wanted = step_ * std::sqrt(error / importance(l)) * step_;
@@ -81,13 +81,13 @@ class TemporalCoder {
                       least_eighths, kMostEighths);
   }
 
-  // The energy that a trajectory must save: what its temporal values cost, and its spatial
-  // factors cost and leave.
+  // Returns the energy that a trajectory must save: the cost of its temporal values, and the
+  // cost and error of its spatial factors.
   double least_worth(double bits, std::size_t l) const {
     const double error = step_ * step_ / 12.0;
     const std::size_t width = analysis_.pc.temporal.size();
     const std::size_t places = analysis_.spatial_left.size() / width;
-    double cost = 0.0;  // of a factor, on average
+    double cost = 0.0;  // mean cost of a factor
     for (std::size_t i = 0; i < places; ++i) {
       const double left = analysis_.spatial_left[i * width + l] / error;
       cost += expected_value_cost(left) / static_cast<double>(places);
@@ -95,8 +95,9 @@ class TemporalCoder {
     return lambda(step_) * bits + error * cost * static_cast<double>(num_vertices_);
   }
 
-  // The weight of a squared error of a temporal value: the sum of squared spatial factors or,
-  // as in Vasa and Skala 2009, (18) and (19), the squared sum of their magnitudes per vertex.
+  // Returns the weight of a squared error of a temporal value: the sum of squared spatial
+  // factors or, as in Vasa and Skala 2009, (18) and (19), the squared sum of their magnitudes
+  // per vertex.
   double importance(std::size_t l) const {
     constexpr double kSmallest = 1e-12;  // fixed: above zero
     if (!settings_.cobra_steps) return analysis_.pc.energy[l];

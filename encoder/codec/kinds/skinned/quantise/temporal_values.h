@@ -16,7 +16,7 @@ namespace rlpc {
 // bones. The residual of bone motion is confined to few vertices, so that its temporal values
 // may be coarser.
 inline constexpr double kTemporalErrorOfBones = 2.0;
-// The squared error of a temporal value relative to that of a spatial one.
+// Returns the squared error of a temporal value relative to that of a spatial one.
 inline double temporal_error(const SharedRig& rig) {
   return rig.bones.size() > 1 ? kTemporalErrorOfBones : kTemporalError;
 }

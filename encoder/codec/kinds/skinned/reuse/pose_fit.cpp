@@ -23,7 +23,7 @@ Vec3d centre_of(const SpanFrames& frames, std::uint32_t frame) {
 
 Vec3d point_of(const Vec3i& pivot) { return Vec3d(pivot[0], pivot[1], pivot[2]) / kPointScale; }
 
-// The pose of a bone that moves like this.
+// Returns the pose of a bone that moves like this.
 WantedPose pose_of(const Motion& motion, const Vec3d& pivot, const WantedPose* before) {
   WantedPose pose{rotation_quaternion(motion.leftCols<3>()), {}};
   const Vec3d origin = moved(motion, pivot);
@@ -65,7 +65,7 @@ PoseFit::PoseFit(const SharedRig& rig, const std::array<std::vector<std::int32_t
   }
 }
 
-// Each bone moves as the vertices that follow it most, or else as its parent.
+// Moves each bone like the vertices that follow it most, or else like its parent.
 PoseFit::Motions PoseFit::rigid_motions(const SpanFrames& frames, std::uint32_t frame,
                                         const Vec3d& centre) const {
   const std::size_t n = rig_.bones.size();
@@ -100,12 +100,12 @@ void PoseFit::keep_joints(std::span<const Motion> targets, const Vec3d& centre,
       if (c != b) rest -= motions[c] * moments_.block(c, b);
     }
     const double mass = moments_.mass(b);
-    const Vec3d sum = moments_.block(b, b).block<3, 1>(0, 3);  // of w_b^2 p
+    const Vec3d sum = moments_.block(b, b).block<3, 1>(0, 3);  // sum of w_b^2 p
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
     if (!bone.rotation_flag) {
       if (parent != nullptr) turn = parent->leftCols<3>();
     } else if (mass > 0.0) {
-      // About the pivot if that is fixed, otherwise about the mean.
+      // Rotate about the pivot if that is fixed, otherwise about the mean.
       Eigen::Matrix3d h = rest.leftCols<3>();
       if (bone.origin_flag) {
         h -= rest.col(3) * sum.transpose() / mass;
@@ -126,7 +126,7 @@ void PoseFit::keep_joints(std::span<const Motion> targets, const Vec3d& centre,
   }
 }
 
-// Consecutive frames, each starting from the one before.
+// Fits consecutive frames, each starting from the one before.
 void PoseFit::fit_some(const SpanFrames& frames, std::span<const std::uint32_t> chosen,
                        std::span<Motions> motions) const {
   std::vector<Vec3d> centres;

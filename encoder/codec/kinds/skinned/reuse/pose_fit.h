@@ -18,8 +18,8 @@ class PoseFit {
   // rest: rest positions, 1/16 grid units. Keeps a reference to the rig.
   PoseFit(const SharedRig& rig, const std::array<std::vector<std::int32_t>, 3>& rest);
 
-  // The poses of all bones in some frames, [bone][frame], as joints and bones that do not
-  // rotate allow. Quaternions keep their sign from frame to frame.
+  // Fits the poses of all bones in some frames, [bone][frame], as far as joints and bones that
+  // do not rotate allow. Quaternions keep their sign from frame to frame.
   std::vector<std::vector<WantedPose>> fit(const SpanFrames& frames,
                                            std::span<const std::uint32_t> chosen) const;
 

@@ -35,7 +35,7 @@ struct Arm {
     }
   }
 
-  // gap: of the joint, along y.
+  // gap: gap of the joint along y.
   std::vector<std::vector<WantedPose>> poses(std::uint32_t num_frames, double gap) const {
     std::vector<std::vector<WantedPose>> list(2);
     for (std::uint32_t f = 0; f < num_frames; ++f) {
@@ -102,7 +102,7 @@ TEST(PoseFit, FindsThePosesOfAllBones) {
   const PoseFit fit(arm.rig, arm.rest);
   const auto found = fit.fit(frames, numbers_from(0, 20));
   expect_near(found, wanted, 16.0);
-  // A single frame starts afresh.
+  // A single frame starts from scratch.
   const std::uint32_t last = 19;
   EXPECT_NEAR(fit.fit(frames, std::span(&last, 1))[1][0].origin[0], wanted[1][19].origin[0],
               16.0);

@@ -22,7 +22,7 @@ void for_blocks(std::size_t num_vertices, const Use& use) {
   }
 }
 
-// A normalised factor of 1, in the unit of the temporal values that the stream codes.
+// Returns normalised factors of 1, in the unit of the temporal values that the stream codes.
 std::vector<double> units_of(const SharedRig& rig) {
   std::vector<double> units;
   for (const Trajectory& t : rig.trajectories) {
@@ -32,7 +32,7 @@ std::vector<double> units_of(const SharedRig& rig) {
   return units;
 }
 
-// Row by row, from the lower triangle.
+// Returns the upper triangle row by row, from the lower one.
 std::vector<double> upper_triangle(std::vector<double> lower, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = 0; k < i; ++k) lower[k * n + i] = lower[i * n + k];

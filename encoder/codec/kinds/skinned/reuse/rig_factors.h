@@ -1,5 +1,4 @@
-// The spatial factors of a shared rig as decoded, and the temporal values that suit them
-// best.
+// The spatial factors of a shared rig as decoded, and the best temporal values for them.
 #pragma once
 
 #include <cstddef>
@@ -20,12 +19,12 @@ class RigFactors {
   explicit RigFactors(const KeptRig& kept);
 
   std::size_t count() const { return unit_.size(); }
-  // The sum of the squared factors of a trajectory.
+  // Returns the sum of the squared factors of a trajectory.
   double energy(std::size_t l) const { return energy_[l]; }
-  // The factors of some vertices, [vertex][trajectory].
+  // Returns the factors of some vertices, [vertex][trajectory].
   std::vector<double> of(std::size_t first, std::size_t num_vertices) const;
-  // The temporal values, [trajectory][frames.num_frames of the rows], with which the factors
-  // come closest to the displacements.
+  // Returns the temporal values, [trajectory][frames.num_frames of the rows], with which the
+  // factors come closest to the displacements.
   std::vector<double> fit(const TrajectoryRows& displacement) const;
 
  private:
@@ -35,11 +34,11 @@ class RigFactors {
   SymmetricSystem system_;
 };
 
-// What the bones of a rig leave of some frames and, once temporal values are set, what the
-// trajectories leave, too.
+// Residual of some frames after the bones of a rig and, once temporal values are set, after its
+// trajectories too.
 class RigRemainder {
  public:
-  // motions: of the bones in the chosen frames. Keeps references to rig, factors and frames.
+  // motions: the bones in the chosen frames. Keeps references to rig, factors and frames.
   RigRemainder(const KeptRig& kept, const RigFactors& factors, const SpanFrames& frames,
                std::vector<std::uint32_t> chosen, MotionsOfBones motions)
       : kept_(kept),
@@ -49,9 +48,9 @@ class RigRemainder {
         motions_(std::move(motions)) {}
 
   std::size_t width() const { return 3 * chosen_.size(); }
-  // [trajectory][width()]: for each coordinate, the chosen frames.
+  // Sets the temporal values, [trajectory][width()]: for each coordinate, the chosen frames.
   void set_temporal(std::vector<double> temporal);
-  // By vertex; valid as long as the object.
+  // Returns the residual, a row for each coordinate of a vertex; valid as long as the object.
   TrajectoryRows rows() const;
 
  private:
@@ -62,7 +61,7 @@ class RigRemainder {
   const SpanFrames& frames_;
   std::vector<std::uint32_t> chosen_;
   MotionsOfBones motions_;
-  std::vector<double> negative_;  // of the temporal values; empty: none
+  std::vector<double> negative_;  // negated temporal values; empty: none
 };
 
 }  // namespace rlpc

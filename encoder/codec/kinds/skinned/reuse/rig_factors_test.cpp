@@ -15,7 +15,7 @@
 namespace rlpc {
 namespace {
 
-// Displacements that the factors make with these temporal values, and something else.
+// Returns displacements that the factors make with these temporal values, and something else.
 TrajectoryRows product(const RigFactors& factors, const std::vector<double>& temporal,
                        std::size_t width, double other) {
   return {KeptTube::kVertices, width,
@@ -43,7 +43,7 @@ TEST(RigFactors, FitsTheTemporalValues) {
   }
   const std::vector<double> exact = factors.fit(product(factors, temporal, kWidth, 0.0));
   for (std::size_t i = 0; i < temporal.size(); ++i) EXPECT_NEAR(exact[i], temporal[i], 1e-6);
-  // What is left is orthogonal to the factors.
+  // The residual is orthogonal to the factors.
   const std::vector<double> fitted = factors.fit(product(factors, temporal, kWidth, 50.0));
   std::vector<double> left;
   for (std::size_t i = 0; i < fitted.size(); ++i) left.push_back(temporal[i] - fitted[i]);

@@ -58,7 +58,8 @@ class SpanReuse {
                                                  const SpanTracks& tracks) const;
   int eighths_of(std::size_t l, double largest) const;
   LocalGroup local_group(const FrameRange& span) const;
-  // What is left in frames of the span; temporal values as decoded.
+  // Returns the residual in frames of the span. has_temporal: after the decoded temporal
+  // values.
   RigRemainder remainder(const FrameRange& span, bool has_temporal) const;
   double least_energy() const { return step_ * step_ / 12.0 * frames_.num_vertices; }
 
@@ -68,17 +69,17 @@ class SpanReuse {
   const OrderedMesh& mesh_;
   const SpanFrames& frames_;
   double step_;
-  SkinnedSettings settings_;  // max_trajectories: of local component groups
+  SkinnedSettings settings_;  // max_trajectories: maximum in a local component group
   PoseFit poses_;
   RigFactors factors_;
-  // As coded:
+  // Results of coding.
   std::vector<SkinnedGof> gofs_;
   std::vector<BoneMotion> bones_;
   std::vector<double> temporal_;  // [trajectory][3][num_frames]
 };
 
-// The least that local component groups are expected to cost, with what they leave; from a
-// sample of the frames. Bones and trajectories of the rig are taken to be exact and free.
+// Returns the least expected cost of local component groups and their residuals, from a sample
+// of the frames. Bones and trajectories of the rig are assumed exact and free.
 double SpanReuse::expected_cost() const {
   constexpr std::uint32_t kFrames = 12;  // fixed: enough to reject a span
   const std::uint32_t count = std::min(kFrames, frames_.num_frames);
@@ -104,7 +105,7 @@ double SpanReuse::expected_cost() const {
       components_by_row(left.rows(), left.width(), least_energy() / part);
   const std::vector<float> spatial_left = find_spatial_left(mesh_, pc);
   const std::size_t width = pc.temporal.size();
-  double cost = part * pc.total_energy;  // of a GOF
+  double cost = part * pc.total_energy;  // cost of a GOF
   for (std::size_t l = 0; l < width; ++l) {
     double mean = 0.0;
     const std::size_t places = spatial_left.size() / width;
@@ -143,8 +144,8 @@ RigRemainder SpanReuse::remainder(const FrameRange& span, bool has_temporal) con
   return left;
 }
 
-// The exponent of the step of temporal values, 2^(eighths / 8), which has the same meaning as
-// in TemporalValues. largest: magnitude of the values.
+// Returns the exponent of the step of temporal values, 2^(eighths / 8), with the meaning that
+// it has in TemporalValues. largest: largest magnitude of the values.
 int SpanReuse::eighths_of(std::size_t l, double largest) const {
   const double wanted = step_ * std::sqrt(temporal_error(rig_) / factors_.energy(l));
   return static_cast<int>(

@@ -1,4 +1,4 @@
-// Encodes a span with the shared rig of an earlier one: as skinned GOFs with shared rigs alone.
+// Encodes a span with the shared rig of an earlier one.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace rlpc {
 
-// None: it costs at least `most` (Lagrangian cost), or is expected to cost far more. step:
-// quantiser step, grid units.
+// Encodes a span without a rig of its own. None: it costs at least `most` (Lagrangian cost), or
+// is expected to cost far more. step: quantiser step, grid units.
 std::optional<EncodedSpan> encode_with_rig(const SkinnedContext& context, const KeptRig& kept,
                                            const SpanFrames& frames, double step, double most);
 

@@ -20,7 +20,7 @@ double rms_error(const SpanFrames& frames, const EncodedSpan& encoded) {
                    static_cast<double>(frames.xyz.size()));
 }
 
-// The motion goes on, other than before in detail.
+// The motion continues, but differs from before in detail.
 TEST(SpanReuse, FurtherFramesOfTheSameMotionTakeTracksAlone) {
   const KeptTube tube;
   ASSERT_TRUE(tube.kept);
@@ -68,7 +68,7 @@ TEST(SpanReuse, OtherMotionGetsLocalComponentGroups) {
   EXPECT_LT(rms_error(later, *encoded), 1.3 * own);
 }
 
-// Finer ones than that of the rig need local component groups.
+// Finer steps than that of the rig need local component groups.
 TEST(SpanReuse, ErrorsFollowTheStep) {
   const KeptTube tube;
   const SpanFrames later = KeptTube::frames(bent, 40, 32);

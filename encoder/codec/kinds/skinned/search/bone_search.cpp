@@ -54,8 +54,8 @@ Rig translation_rig(const SpanFrames& frames) {
 // The fraction of the work on a span that is done after a stage, on characters of one to four
 // thousand vertices; the rest is an analysis and an encoding.
 constexpr double kFitted = 0.25;    // fixed: measured
-constexpr double kDrafted = 0.5;    // fixed: likewise
-constexpr double kCompared = 0.75;  // fixed: likewise
+constexpr double kDrafted = 0.5;    // fixed: measured
+constexpr double kCompared = 0.75;  // fixed: measured
 
 constexpr double kLeastError = 1e-6;  // fixed: above zero
 
@@ -103,8 +103,8 @@ double BoneSearch::expected_cost(const Growth& growth, const Growth::Bones& bone
   return growth.fit->expected_cost(bones.state, bones.spectrum, step);
 }
 
-// Fits bones of each number, ascending, as long as there is a prospect that they are worth
-// their bits: more than a single bone, others with the same number, and those before.
+// Fits bones of each number, ascending, as long as they may be better worth their bits than a
+// single bone, others with the same number, and those before.
 void BoneSearch::grow_all(double step) {
   // tuned (off: 100): Numbers of bones, in order, from which expected costs decide that there
   // is none.
@@ -151,7 +151,7 @@ void BoneSearch::grow_all(double step) {
     const bool promising = of_count < worth_trying(step);
     if (telling && promising && one_ && !is_compared_) {
       is_compared_ = true;
-      try_one_bone(SkinnedTrials(context_, frames_, step));  // what it costs, not the trial
+      try_one_bone(SkinnedTrials(context_, frames_, step));  // for its cost, not the trial
     }
     std::vector<Growth*> still;
     std::vector<double> of_still;
@@ -181,7 +181,7 @@ SkinnedCandidate BoneSearch::candidate(Growth& growth, Growth::Bones& bones,
           settings_};
 }
 
-// Whichever is expected to cost less, a bone that rotates or one that only translates.
+// Returns a bone that rotates or one that only translates, whichever is expected to cost less.
 Rig BoneSearch::guess_one_bone(double step) {
   start_all();
   const Growth& any = growths_.front();
@@ -223,10 +223,10 @@ SkinnedTrial BoneSearch::try_requested(const SkinnedTrials& trials) {
   return std::move(*best);
 }
 
-// Bones that may be worth their bits, the most likely first: if they are expected to cost less
-// than a single bone, and not more than estimates are wrong by above the least. In small GOFs,
-// of which a draft takes a tenth of a second, those that are not likely follow, one for each
-// number of influences: estimates of few vertices tell little.
+// Returns bones that may be worth their bits, the most likely first: their expected cost is
+// less than that of a single bone, and exceeds the least by no more than estimates are wrong.
+// In small GOFs, where a draft takes a tenth of a second, unlikely ones follow, one for each
+// number of influences, since estimates from few vertices are imprecise.
 std::vector<BoneSearch::Candidate> BoneSearch::candidates(double step) {
   // tuned: Candidates are encoded as drafts, at most this many.
   constexpr std::size_t kDrafts = 3;
@@ -256,7 +256,7 @@ std::vector<BoneSearch::Candidate> BoneSearch::candidates(double step) {
   return kept;
 }
 
-// Exchanges more of the bones of a candidate; none if they were before.
+// Exchanges more of the bones of a candidate; none if that was done before.
 BestTrial BoneSearch::polish(const SkinnedTrials& trials, const Candidate& chosen) {
   Growth& growth = growths_[chosen.growth];
   Growth::Bones& bones = growth.bones[chosen.bones];
@@ -287,8 +287,8 @@ SkinnedCandidate BoneSearch::likeliest(double step) {
 
 double BoneSearch::squared_spread() const { return growths_.front().fit->squared_spread(); }
 
-// Whether the second draft takes fewer bits than the first if both are encoded whole, each at
-// the step at which the wanted error is expected: drafts do not show how well the tracks of
+// Whether the second draft takes fewer bits than the first if both are encoded as a whole, each
+// at the step at which the wanted error is expected: drafts do not show how well the tracks of
 // bones can be coded.
 bool BoneSearch::is_better(const SkinnedTrial& second, const SkinnedTrial& first,
                            const SkinnedTrials& trials, double wanted_error) const {
@@ -306,7 +306,8 @@ bool BoneSearch::is_better(const SkinnedTrial& second, const SkinnedTrial& first
   return bits[1] < bits[0];
 }
 
-// The draft of the fewest bits at equal error. One that is about as good is compared with it.
+// Returns the draft with the fewest bits at equal error, compared with another that is about as
+// good.
 std::size_t BoneSearch::best_of(std::span<const BestTrial> drafts, const SkinnedTrials& trials,
                                 std::optional<double> wanted_error) const {
   std::vector<double> bits;
@@ -328,7 +329,7 @@ std::size_t BoneSearch::best_of(std::span<const BestTrial> drafts, const Skinned
   return is_better(*drafts[second], *drafts[first], trials, error) ? second : first;
 }
 
-// Whether a draft takes fewer bits than another by more than drafts are wrong by.
+// Whether a draft takes fewer bits than another by more than the error of drafts.
 bool BoneSearch::is_clearly_better(const SkinnedTrial& draft, const SkinnedTrial& other) {
   return bits_at_equal_error(draft.bits, draft.error) <
          (1.0 - kTryMargin) * bits_at_equal_error(other.bits, other.error);

@@ -1,4 +1,4 @@
-// Chooses the bones of a skinned GOF: how many there are, and how many each vertex may follow.
+// Chooses the number of bones of a skinned GOF, and how many of them each vertex may follow.
 #pragma once
 
 #include <cstddef>
@@ -17,28 +17,30 @@
 
 namespace rlpc {
 
-// Bones do not depend on the step, and are fitted once. Which of them are worth their bits
-// does, so that a search may be repeated for another step.
+// Bones do not depend on the step and are fitted once. Which of them are worth their bits does
+// depend on it, so a search may be repeated for another step.
 class BoneSearch {
  public:
   // Keeps references to all arguments.
   BoneSearch(const SkinnedContext& context, const SpanFrames& frames);
 
-  // Called after each stage with the fraction done, 0 to 1, of all work on the span.
+  // Sets a function that is called after each stage with the fraction done, 0 to 1, of all work
+  // on the span.
   void set_progress(const std::function<void(double)>& progress) { progress_ = progress; }
-  // A single bone, without encoding it: whichever is expected to cost less, one that rotates or
-  // one that only translates.
+  // Returns a single bone without encoding it: one that rotates or one that only translates,
+  // whichever is expected to cost less.
   Rig guess_one_bone(double step);
-  // What is expected to be the cheapest.
+  // Returns the candidate that is expected to be cheapest.
   SkinnedCandidate likeliest(double step);
-  // The analysis of a draft of one_bone(), if likeliest() needed one; or null.
+  // Returns the analysis of a draft of one_bone(), if likeliest() needed one; else null.
   const SkinnedAnalysis* analysis_of_one() const { return one_ ? &*one_ : nullptr; }
-  // The best trial over all numbers of bones. wanted_error: squared, if it is the target.
+  // Returns the best trial over all numbers of bones. wanted_error: squared, if it is the
+  // target.
   SkinnedTrial search(const SkinnedTrials& trials, std::optional<double> wanted_error);
-  // The sum of squared distances of all vertices from the centres of their frames, about; after
-  // a trial.
+  // Returns about the sum of squared distances of all vertices from the centres of their
+  // frames; call it after a trial.
   double squared_spread() const;
-  // Frees the fitted bones; for after the last search.
+  // Frees the fitted bones, after the last search.
   void release() {
     growths_.clear();
     one_.reset();
@@ -50,19 +52,19 @@ class BoneSearch {
     std::uint32_t influences;
     std::unique_ptr<BoneFit> fit;
     struct Bones {
-      std::uint32_t count = 0;  // that were asked for
-      BoneSolver state;         // while they can be exchanged
+      std::uint32_t count = 0;  // number asked for
+      BoneSolver state;         // bones that can be exchanged
       ResidualSpectrum spectrum;
-      std::optional<BoneSolver> settled = {};  // the same, with the best rest positions
-      bool polished = false;  // there is nothing to gain from further exchanges
+      std::optional<BoneSolver> settled = {};  // the same bones with the best rest positions
+      bool polished = false;                   // further exchanges gain nothing
     };
-    std::vector<Bones> bones = {};  // the first: a single one
+    std::vector<Bones> bones = {};  // the first: a single bone
   };
   struct Candidate {
     std::size_t growth;
     std::size_t bones;      // index
     double expected;        // cost
-    bool is_likely = true;  // by that cost
+    bool is_likely = true;  // judged by that cost
   };
 
   Growth start(std::uint32_t influences) const;
@@ -90,12 +92,12 @@ class BoneSearch {
   std::uint32_t max_influences_;
   std::uint32_t search_influences_;  // maximum bones per vertex while bones are fitted
   std::vector<Growth> growths_;
-  ResidualSpectrum translation_;  // of a single bone that only translates
-  // Of a single bone, of which the expected cost leaves out what adaptive weights predict; at
-  // most 1, as other errors of the estimate are those of all bones.
+  ResidualSpectrum translation_;  // for a single bone that only translates
+  // Ratio of the costs of a single bone: the expected cost ignores what adaptive weights
+  // predict. At most 1, as other errors of the estimate are common to all numbers of bones.
   double actual_to_expected_ = 1.0;
-  bool is_compared_ = false;            // that is known
-  std::optional<SkinnedAnalysis> one_;  // of a draft of a single bone
+  bool is_compared_ = false;            // actual_to_expected_ is known
+  std::optional<SkinnedAnalysis> one_;  // draft of a single bone
   std::function<void(double)> progress_ = [](double) {};
 };
 

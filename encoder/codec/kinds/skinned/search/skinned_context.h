@@ -18,7 +18,7 @@ struct SkinnedContext {
   OrderedMeshes meshes;
 };
 
-// The tools that the search starts from, as far as the settings leave a choice.
+// Returns the tools that the search starts from, as far as the settings leave a choice.
 SkinnedSettings usual_settings(const EncoderSettings& settings);
 
 }  // namespace rlpc

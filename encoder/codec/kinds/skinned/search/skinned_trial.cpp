@@ -11,7 +11,7 @@ namespace rlpc {
 namespace {
 
 // tuned (off: 0): Levels of hierarchical tracks besides level 0, with the High profile. Each
-// level more doubles the distance over which level 0 is predicted.
+// further level doubles the distance over which level 0 is predicted.
 constexpr int kTrackLevels = 1;
 
 }  // namespace

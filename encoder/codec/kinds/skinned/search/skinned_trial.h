@@ -12,13 +12,13 @@
 
 namespace rlpc {
 
-// The numbers that a fit was asked for; both 0 for a single bone.
+// Numbers that a fit was asked for; both 0 for a single bone.
 struct BoneCounts {
   std::uint32_t bones = 0;
   std::uint32_t influences = 0;  // maximum bones per vertex during the fit
 };
 
-// tuned: With bones, the squared error is about this power of the step, if these follow it.
+// tuned: With bones, the squared error is about this power of the step, if they follow it.
 inline constexpr double kErrorPower = 1.7;
 
 struct SkinnedCandidate {
@@ -39,11 +39,11 @@ struct SkinnedTrial {
 // None: no trial so far.
 using BestTrial = std::optional<SkinnedTrial>;
 
-// The cheaper of the two; `before` in a tie.
+// Returns the cheaper of the two; `before` in a tie.
 BestTrial cheaper(BestTrial before, SkinnedTrial trial);
 
-// Encodes candidates at one quantiser step (grid units), as drafts: with tracks coded as simply
-// as suffices to compare them, and errors from a sample of the frames.
+// Encodes candidates at one quantiser step (grid units), as drafts: tracks are coded only as
+// well as comparing candidates needs, and errors are those of a sample of the frames.
 class SkinnedTrials {
  public:
   // Keeps references to context and frames.
@@ -51,11 +51,11 @@ class SkinnedTrials {
       : context_(context), frames_(frames), step_(step) {}
 
   double step() const { return step_; }
-  // before: of analyse_skinned_gof().
+  // Encodes a draft. before: as in analyse_skinned_gof().
   SkinnedTrial run(SkinnedCandidate candidate, const SkinnedAnalysis* before = nullptr) const;
-  // A whole encoding of the candidate, not a draft.
+  // Encodes the candidate as a whole, not as a draft.
   SkinnedTrial whole(const SkinnedCandidate& candidate) const;
-  // The candidate with other settings.
+  // Encodes the candidate with other settings.
   SkinnedTrial again(const SkinnedTrial& trial, const SkinnedSettings& settings) const;
   // Tries the candidate with other settings; none if that is not cheaper.
   BestTrial with_settings(const SkinnedTrial& trial, const SkinnedSettings& settings) const;
@@ -68,13 +68,13 @@ class SkinnedTrials {
   double step_;
 };
 
-// The analysis that encode_skinned_gof() starts from.
+// Returns the analysis that encode_skinned_gof() starts from.
 SkinnedAnalysis analyse_candidate(const SkinnedContext& context, const SpanFrames& frames,
                                   const SkinnedCandidate& candidate, double step,
                                   const SkinnedAnalysis* before = nullptr);
 
 // Quantises the trajectories and writes the units. step: quantiser step, grid units.
-// has_followers: with a shared rig that later spans may use.
+// has_followers: later spans may use the shared rig.
 EncodedSpan encode_skinned_gof(const SkinnedContext& context, const SkinnedAnalysis& analysis,
                                const SkinnedSettings& settings, double step,
                                bool has_followers);

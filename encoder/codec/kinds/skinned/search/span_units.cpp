@@ -27,7 +27,7 @@ DecodeFrame frames_of(std::shared_ptr<const SkinnedRecon> recon) {
   };
 }
 
-// GOFs one after the other.
+// Decodes GOFs one after the other.
 DecodeFrame frames_of(std::vector<std::shared_ptr<const SkinnedRecon>> recons) {
   return [recons = std::move(recons)](std::uint32_t f, std::span<std::int32_t> positions) {
     auto recon = recons.begin();
@@ -36,7 +36,7 @@ DecodeFrame frames_of(std::vector<std::shared_ptr<const SkinnedRecon>> recons) {
   };
 }
 
-// Local component groups add trajectories with factors of their own.
+// Counts the factors of a span; local component groups add trajectories with their own.
 void count(const SharedRig& rig, std::uint64_t num_vertices, std::span<const SkinnedGof> gofs,
            EncodedSpan& encoded) {
   const std::uint64_t num_bones = rig.bones.size();
@@ -57,7 +57,7 @@ void count(const SharedRig& rig, std::uint64_t num_vertices, std::span<const Ski
 
 }  // namespace
 
-// values: known, or empty.
+// values: spatial values if known, or empty.
 SpanUnits::SharedRecon SpanUnits::recon_of(const SharedRig& rig,
                                            std::span<const std::int32_t> values) const {
   return values.empty() ? std::make_shared<RigRecon>(mesh_, rig, header_.position_bits, false)
@@ -91,7 +91,7 @@ void SpanUnits::write_rig(const SharedRig& rig, EncodedSpan& encoded) const {
   add_units(write_shared_rig(rig, kRigIdx, mesh_, header_), UnitType::kRig, encoded);
 }
 
-// Skinned GOFs with shared rigs, complete but for temporal layers.
+// Writes skinned GOFs with shared rigs, complete except for temporal layers.
 void SpanUnits::write_gofs(const SharedRecon& recon, std::vector<SkinnedGof> gofs,
                            EncodedSpan& encoded) const {
   std::vector<std::shared_ptr<const SkinnedRecon>> recons;

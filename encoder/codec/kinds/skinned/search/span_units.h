@@ -21,14 +21,14 @@ class SpanUnits {
   SpanUnits(const OrderedMesh& mesh, const SequenceHeader& header, int temporal_layers)
       : mesh_(mesh), header_(header), temporal_layers_(temporal_layers) {}
 
-  // The only GOF of a span, with vertices of its own.
+  // Writes the only GOF of a span, with vertices of its own.
   EncodedSpan alone(CodedSpan coded) const;
-  // A shared rig and skinned GOFs with shared rigs.
+  // Writes a shared rig and the GOFs that use it.
   EncodedSpan with_rig(CodedSpan coded) const;
-  // The same; later spans may use the rig. rest: as decoded, 1/16 grid units.
+  // Writes the same; later spans may use the rig. rest: as decoded, 1/16 grid units.
   EncodedSpan with_kept_rig(CodedSpan coded,
                             const std::array<std::vector<std::int32_t>, 3>& rest) const;
-  // Skinned GOFs with the rig of an earlier span. local_groups [GOF].
+  // Writes GOFs that use an earlier rig. local_groups [GOF].
   EncodedSpan with_earlier_rig(const KeptRig& kept, std::vector<SkinnedGof> gofs,
                                std::vector<LocalGroup> local_groups) const;
 

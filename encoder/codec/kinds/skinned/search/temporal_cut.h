@@ -5,11 +5,11 @@
 
 namespace rlpc {
 
-// The GOF gets this many temporal layers, all with their slices; 1 to track_levels + 1. Its
-// other slices are set.
+// Divides the GOF into this many temporal layers, 1 to track_levels + 1, all with their slices.
+// Its other slices must be set.
 void set_temporal_layers(int temporal_layers, SkinnedGof& gof);
 
-// The GOF as it is decoded if only the first `layers` temporal layers, at least 1, are there.
+// Returns the GOF as it is decoded with only the first `layers` temporal layers, at least 1.
 SkinnedGof without_layers(SkinnedGof gof, int layers);
 
 }  // namespace rlpc

@@ -16,7 +16,7 @@ namespace {
 // layers, and the time is short.
 constexpr std::uint32_t kSmallMesh = 1000;
 
-// Changes settings; false if they are so already.
+// Changes settings. Returns false if they had these values before.
 using Change = std::function<bool(SkinnedSettings&)>;
 
 template <class T>
@@ -52,7 +52,7 @@ std::vector<Change> changes(const SkinnedContext& context, const SkinnedCandidat
   return list;
 }
 
-// The same trial with only the largest trajectories. What tools gain shows in these.
+// Returns the trial with only the largest trajectories, which show the gain of tools.
 SkinnedTrial with_few(const SkinnedTrials& trials, const SkinnedTrial& best) {
   // tuned (off: 1e9): Trajectories with which tools are compared.
   constexpr std::size_t kFew = 32;
@@ -64,8 +64,8 @@ SkinnedTrial with_few(const SkinnedTrials& trials, const SkinnedTrial& best) {
 
 }  // namespace
 
-// The result is that of trying one change after another, each on the best so far. Threads try
-// them ahead: what follows a change that wins is tried again.
+// Tries one change after another, each on the best so far. Threads try changes ahead: those
+// after a change that wins are tried again.
 SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& trials,
                           SkinnedTrial start) {
   const std::vector<Change> list = changes(context, start.candidate);
@@ -75,7 +75,7 @@ SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& tr
   std::size_t first = 0;
   while (first < list.size()) {
     std::vector<BestTrial> cheaper_by(list.size());
-    std::atomic<std::size_t> winner = list.size();  // the first so far
+    std::atomic<std::size_t> winner = list.size();  // the first winning change so far
     for_each(list.size() - first, [&](std::size_t i) {
       const std::size_t k = first + i;
       SkinnedSettings other = best.candidate.settings;

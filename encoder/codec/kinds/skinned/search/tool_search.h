@@ -6,7 +6,7 @@
 
 namespace rlpc {
 
-// Varies the tools of `start`, with the same bones; returns the cheapest trial.
+// Varies the tools of `start` with the same bones. Returns the cheapest trial.
 SkinnedTrial search_tools(const SkinnedContext& context, const SkinnedTrials& trials,
                           SkinnedTrial start);
 

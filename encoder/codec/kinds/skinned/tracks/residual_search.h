@@ -3,8 +3,8 @@
 //
 // A residual decides what later values are predicted from, so the better of the two integers
 // next to a wanted residual shows only some places later. Survivors are the best sequences of
-// choices so far. Two that agree in the last values go on alike, so that only the cheaper one
-// is kept; few survivors then do.
+// choices so far. Two that agree in the last values go on alike, so only the cheaper one is
+// kept, and few survivors suffice.
 //
 // Rates are those of the real contexts of each survivor. The models adapt along the best one,
 // as copies for each would take most of the time.
@@ -35,8 +35,8 @@ struct SearchBreadth {
   std::size_t memory = 3;
 };
 
-// The bits of residuals under models that do not adapt meanwhile. Those that are asked for
-// again are looked up.
+// Bits of residuals under models that do not adapt meanwhile; bits that are asked for again are
+// looked up.
 class ResidualBits {
  public:
   void start(ResidualModels& models) {
@@ -66,19 +66,20 @@ class ResidualBits {
   std::array<double, 8> bits_{};  // [magnitude]
 };
 
-// The places of a track, each as soon as those that predict it are known: choices at lower
-// levels then soon show what they cost at higher ones. Keeps the order within each level.
+// Orders the places of a track so that each comes as soon as those that predict it are known:
+// choices at lower levels then soon show what they cost at higher ones. Keeps the order within
+// each level.
 std::vector<TrackPlace> search_order(std::span<const TrackPlace> order);
 
 // Series: the values of a track in closed loop.
-//   Value                          what is known of a place
-//   Predicted                      what is known of it before its residual; `wanted`: the
+//   Value                          result at a place
+//   Predicted                      its state before its residual is known; `wanted`: the
 //                                  residual in steps, fractional, of each coordinate searched
 //   predict(known, at, c)          known(f) returns the Value at an earlier place
 //   follow(predicted, residual, c) changes other coordinates of the residual if they must
 //                                  change with the prediction; returns their squared error
 //   value(predicted, residual, at, c)
-//   are_alike(a, b)                whether later predictions hardly differ
+//   are_alike(a, b)                whether later predictions are nearly equal
 template <class Series>
 class ResidualSearch {
  public:
@@ -102,14 +103,14 @@ class ResidualSearch {
     double cost = 0.0;
     std::vector<RunningMagnitude> magnitude;  // of coordinate c, [level]
     std::vector<Value> values;                // [window_], by frame
-    // What is known of the next place:
+    // State at the next place:
     typename Series::Predicted predicted;
     std::uint32_t expected = 0;
-    Vec3i residual{};  // but for coordinate c
+    Vec3i residual{};  // valid except for coordinate c
   };
   struct Choice {
     double cost;
-    std::int32_t residual;  // of coordinate c
+    std::int32_t residual;  // coordinate c
     std::uint32_t survivor;
   };
 
@@ -130,7 +131,7 @@ class ResidualSearch {
   std::size_t window_;
   TrackModels models_;
   ResidualBits bits_;
-  std::vector<Choice> choices_;  // of all survivors, the cheapest first
+  std::vector<Choice> choices_;  // choices of all survivors, cheapest first
   std::size_t num_choices_ = 0;
   std::vector<Survivor> survivors_;
   std::vector<Survivor> next_;
@@ -179,7 +180,7 @@ void ResidualSearch<Series>::improve(std::size_t c, std::vector<Vec3i>& residual
   }
 }
 
-// The two integers next to what each survivor wants, the cheapest choice first.
+// Lists the two integers next to the residual that each survivor wants, cheapest choice first.
 template <class Series>
 void ResidualSearch<Series>::extend(const TrackPlace& at, std::size_t c, const Vec3i& base,
                                     std::uint32_t mean) {

@@ -14,7 +14,7 @@
 namespace rlpc {
 namespace {
 
-// What places are predicted from comes before them, and levels keep their order.
+// Places come after those that predict them, and levels keep their order.
 TEST(SearchOrder, HasNeighboursFirst) {
   for (const std::uint32_t num_frames : {1U, 2U, 7U, 64U, 100U}) {
     for (int levels = 0; levels <= 5; ++levels) {
@@ -61,7 +61,7 @@ TEST(ResidualBits, AreThoseOfTheRigs) {
 
 using Values = std::vector<std::array<double, 3>>;
 
-// Lagrangian cost of residuals in closed loop.
+// Returns the Lagrangian cost of residuals in closed loop.
 double cost_of(const Values& values, const Trajectory& t, const TrackState& before,
                const TrackResiduals& residuals) {
   Trajectory coded = t;
@@ -86,7 +86,7 @@ double cost_of(const Values& values, const Trajectory& t, const TrackState& befo
   return error + kLambda * bits.bits();
 }
 
-// Of short tracks, the search finds nearly the best of all roundings of a coordinate. It cannot
+// In short tracks, the search finds nearly the best of all roundings of a coordinate; it cannot
 // find the best, as the models adapt along one survivor.
 TEST(ResidualSearch, FindsNearlyTheBestRoundings) {
   constexpr std::uint32_t kFrames = 8;

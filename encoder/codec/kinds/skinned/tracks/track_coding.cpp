@@ -19,11 +19,11 @@
 namespace rlpc {
 namespace {
 
-constexpr double kWeightScale = 64.0;  // fixed: of temporal_weight
+constexpr double kWeightScale = 64.0;  // fixed: unit of temporal_weight
 constexpr double kMaxWeight = 255.0;   // fixed: format
 constexpr int kWeightBits = 9;         // fixed: format
-// tuned (off: 100): Ways to code a track that are tried with each order of its frames: those of
-// the fewest expected bits.
+// tuned (off: 100): Ways to code a track that are tried with each order of its frames: those
+// with the fewest expected bits.
 constexpr std::size_t kTried = 2;
 // tuned (off: 1): Codings of a track that the search for residuals tries to improve, cheapest
 // first. It changes their order of cost little.
@@ -33,12 +33,12 @@ constexpr std::size_t kSurvivors = 4;
 // tuned (off: 1): Survivors with the fast preset, which has less time.
 constexpr std::size_t kSurvivorsFast = 2;
 // tuned (off: 1): Survivors are alike if this many latest values agree, for each level of the
-// track. Older values hardly tell what a choice costs later.
+// track. Older values barely affect what a choice costs later.
 constexpr std::size_t kMemory = 3;
 
 using Values = std::span<const std::array<double, 3>>;
-// Least-squares weights for predicting each value of level 0 from the `count` values before it
-// there, which are `stride` frames apart. values: in steps.
+// Fits least-squares weights that predict each value of level 0 from the `count` values before
+// it there, which are `stride` frames apart. values: in steps.
 bool fit_weights(Values values, std::size_t stride, int count,
                  std::array<std::int16_t, kMaxTemporalWeights>& weights) {
   SmallSystem<kMaxTemporalWeights> m;  // normal equations
@@ -81,7 +81,7 @@ struct CodedTrack {
   TrackState after;
 };
 
-// A way to code a track: its order, and what precedes it.
+// A way to code a track: its order, and the state before it.
 struct TrackTask {
   std::vector<TrackPlace> order;
   const TrackState* before = nullptr;
@@ -130,7 +130,7 @@ std::optional<CodedTrack<typename Series::Value>> code_track(const Series& serie
   return coded;
 }
 
-// Each residual by itself.
+// Rounds each residual by itself.
 template <class Series>
 auto code_greedily(const Series& series, const TrackTask& task, double limit, bool nearest) {
   return code_track(series, task, limit,
@@ -158,15 +158,15 @@ void search_residuals(const Series& series, const TrackTask& task, bool fast,
   if (found) coded = std::move(*found);
 }
 
-// The bits of residuals whose magnitudes have a geometric distribution of this mean.
+// Returns the bits of residuals whose magnitudes have a geometric distribution with this mean.
 double geometric_bits(double mean) {
   const double some =
       mean > 0.0 ? (1.0 + mean) * det_log2(1.0 + mean) - mean * det_log2(mean) : 0.0;
   return some + mean / (1.0 + mean);
 }
 
-// The expected bits of the residuals, with rounding to nearest: values then hardly depend on
-// what predicts them.
+// Returns the expected bits of the residuals, with rounding to nearest: values then barely
+// depend on their predictor.
 template <class Series>
 double expected_bits(const Series& series, const TrackTask& task,
                      std::span<const std::vector<typename Series::Value>> ideal) {
@@ -202,7 +202,7 @@ template <class Header>
 struct Way {
   Header header;
   int between;
-  double bits;  // of those elements, except for `between`
+  double bits;  // bits of those elements, except for `between`
 };
 
 // Codes the bins of `between`, if the GOF has hierarchical tracks.
@@ -214,8 +214,8 @@ void write_between(Coder& coder, Models& models, int between, int track_levels) 
   }
 }
 
-// The tasks of the ways of the fewest expected bits, the fewest first. Expectations tell less
-// of orders of frames than of ways with the same order.
+// Returns the tasks with the fewest expected bits, the fewest first. Expectations are less
+// precise between orders of frames than between ways with the same order.
 template <class Series, class Wanted, class Header>
 std::vector<std::pair<const Way<Header>*, TrackTask>> likely_ways(
     Wanted wanted, std::span<const Way<Header>> ways, const TrackOptions& options,
@@ -252,7 +252,7 @@ std::vector<std::pair<const Way<Header>*, TrackTask>> likely_ways(
 
 // Codes a track in the cheapest of several ways; sets `header` and advances the state.
 //
-//   wanted  [num_frames], as Series wants it
+//   wanted  [num_frames], as in Series
 template <class Series, class Wanted, class Header>
 CodedTrack<typename Series::Value> code_best(Wanted wanted, std::span<const Way<Header>> ways,
                                              const TrackOptions& options, TrackState& state,

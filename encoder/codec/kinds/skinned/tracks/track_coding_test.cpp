@@ -33,7 +33,7 @@ Values smooth() {
     return std::array<double, 3>{400.0 * std::sin(0.31 * f), 90.0 * std::cos(0.2 * f), 2.0 * f};
   });
 }
-// Deterministic noise.
+// Returns deterministic noise.
 Values rough() {
   return values_of([](double f) {
     return std::array<double, 3>{300.0 * std::sin(17.3 * f * f),
@@ -194,7 +194,7 @@ std::array<double, 4> turn(double angle, const std::array<double, 3>& axis) {
   return {std::cos(angle / 2), s * axis[0], s * axis[1], s * axis[2]};
 }
 
-// A bone that rotates at constant speed while its pivot moves along a line.
+// Returns a bone that rotates at constant speed while its pivot moves along a line.
 std::vector<WantedPose> steady_poses(double speed) {
   std::vector<WantedPose> wanted(kFrames);
   for (std::uint32_t f = 0; f < kFrames; ++f) {
@@ -222,7 +222,7 @@ void expect_close(const std::vector<WantedPose>& wanted, const BoneMotion& motio
       same += wanted[f].rotation[c] * static_cast<double>(motion.poses[f].rotation[c]);
     }
     same /= static_cast<double>(1 << kQuaternionFractionBits);
-    const double sine2 = 1.0 - same * same;  // of half the angle between the rotations
+    const double sine2 = 1.0 - same * same;  // for half the angle between the rotations
     ASSERT_LT(sine2, 3.1 * std::exp2(-24)) << f;
     for (std::size_t c = 0; c < 3; ++c) {
       ASSERT_LE(std::abs(static_cast<double>(motion.poses[f].origin[c]) - wanted[f].origin[c]),

@@ -26,7 +26,7 @@ QuaternionD inverse(const Quaternion& q) {
           -static_cast<double>(q[2]) * one, -static_cast<double>(q[3]) * one};
 }
 
-// The rotation from the predicted to the wanted rotation, in steps.
+// Returns the rotation from the predicted to the wanted rotation, in steps.
 std::array<double, 3> RotationSeries::wanted_residual(const Quaternion& prediction,
                                                       std::uint32_t f) const {
   QuaternionD turn = product(inverse(prediction), wanted_[f]);

@@ -1,4 +1,4 @@
-// The values of tracks in closed loop, for ResidualSearch.
+// Values of tracks in closed loop, for ResidualSearch.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ class TrajectorySeries {
     std::int64_t prediction = 0;
   };
 
-  // wanted [num_frames]: in steps. The references must outlive the series.
+  // wanted: [num_frames], in steps. The references must outlive the series.
   TrajectorySeries(std::span<const std::array<double, 3>> wanted, const Trajectory& trajectory)
       : wanted_(wanted), trajectory_(trajectory) {}
 
@@ -44,7 +44,7 @@ class TrajectorySeries {
     return clip_signed(kTemporalIndexBits, predicted.prediction + residual[c]);
   }
   static bool are_alike(Value a, Value b) { return a == b; }
-  // The value nearest to the wanted one.
+  // Returns the value nearest to the wanted one.
   Value ideal(std::uint32_t f, std::size_t c) const { return round_to_int(wanted_[f][c]); }
 
  private:
@@ -59,7 +59,7 @@ class OffsetSeries {
   using Value = std::int64_t;
   using Predicted = TrajectorySeries::Predicted;
 
-  // wanted [num_frames]: in the unit of the offsets.
+  // wanted: [num_frames], in the unit of the offsets.
   OffsetSeries(std::span<const std::array<double, 3>> wanted, const Bone& bone)
       : wanted_(wanted), order_(bone.origin_order), step_(step_of(bone.origin_step_idx)) {}
 
@@ -103,7 +103,7 @@ class RotationSeries {
     Quaternion prediction = kNoRotation;
   };
 
-  // wanted [num_frames]: of unit length.
+  // wanted: [num_frames], of unit length.
   RotationSeries(std::span<const QuaternionD> wanted, const Bone& bone)
       : wanted_(wanted), order_(bone.rotation_order), step_(step_of(bone.rotation_step_idx)) {}
 

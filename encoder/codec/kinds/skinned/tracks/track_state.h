@@ -1,4 +1,4 @@
-// What choices among codings of a track compare and pass on.
+// State that codings of a track pass on, and the cost by which they are compared.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace rlpc {
 struct TrackState {
   explicit TrackState(std::uint32_t num_frames) : mean(num_frames, 0) {}
   TrackModels models;
-  std::array<BitModel, kMaxBetween> between;  // of rotation_between and the like
+  std::array<BitModel, kMaxBetween> between;  // for rotation_between and the like
   std::vector<std::uint32_t> mean;
 };
 
