@@ -294,9 +294,8 @@ void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
   BitReader r = bits_of(unit, payload);
   if (is_live(lead_.header->header, GofKind::kInter) && gof_.access_unit &&
       gof_.access_unit->header().kind == GofKind::kInter) {
-    findings_.unchecked(
-        "R-HSH-03", "unit_type", unit.offset * 8,
-        "GOFs of frames of an open-ended stream have hashes in their frame units");
+    findings_.unchecked("R-HSH-03", "unit_type", unit.offset * 8,
+                        "inter GOFs of an open-ended stream have hashes in their frame units");
     return;
   }
   const auto hash = parse_gof_hash(r, gof_.num_frames);

@@ -44,7 +44,7 @@ def scalable_of(num_layers):
 NOTE = (
     "SSLPC: each frame is predicted from the one before; a vertex moves as the mean of its ring in "
     "lower layers. STSLPC: odd frames are predicted from the odd frame before, even ones from both "
-    "sides. Both are GOFs of frames of the High profile with --frame-weights plain; layers, base "
+    "sides. Both are inter GOFs of the High profile with --frame-weights plain; layers, base "
     "and entropy coder are those of the format (8.9, 9), and even frames of STSLPC have quantiser "
     "steps 1.2 times as large. Learned: the same with the weights that each vertex learns. The "
     "whole sequence is one group of frames; all bytes of the stream are counted.")
