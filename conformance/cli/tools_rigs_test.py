@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Streams whose GOFs share shared rigs, by the tools.
+"""Tests the tools on streams whose GOFs use shared rigs.
 
     tools_rigs_test.py --bin BUILD/bin [unittest arguments, such as Rigs]
 """

@@ -30,7 +30,7 @@ class ElementReader {
   bool require(bool condition, const char* rule, const std::string& allowed);
   bool supported(bool condition, const char* rule, const std::string& allowed);
 
-  // False once a code was invalid or extended past the payload; values are 0 from then on.
+  // Returns false once a code was invalid or passed the end of the payload; later values are 0.
   bool readable() const { return readable_; }
   std::uint64_t bit_pos() const { return first_bit_ + pos_; }
   std::uint32_t failures() const { return failures_; }

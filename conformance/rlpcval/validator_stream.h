@@ -37,7 +37,7 @@ class StreamValidator {
   // validator.cpp: units and their order.
   void walk();
   bool is_foreign() const;
-  // False if the bytes of the unit are damaged.
+  // Reads a unit. Returns false if its bytes are damaged.
   bool visit(const UnitHeader& unit);
   bool check_place(const UnitHeader& unit);
   bool may_stand_here(const UnitHeader& unit) const;

@@ -16,7 +16,7 @@ std::mutex counting;
 // The size is stored before the returned block.
 constexpr std::size_t kBefore = alignof(std::max_align_t);
 
-// Null if there is no memory.
+// Allocates memory; null if there is none.
 void* take(std::size_t size) noexcept {
   const std::lock_guard<std::mutex> lock(counting);
   if (memory_count.calls_left == 0) {

@@ -19,8 +19,8 @@
 
 namespace rlpc::worst_case {
 
-// A cluster GOF (Baseline); a skinned GOF (Main); a skinned GOF with a shared rig with its
-// shared rig (High); an inter GOF (High).
+// A cluster GOF (Baseline); a skinned GOF (Main); a shared rig and a skinned GOF that uses it
+// (High); an inter GOF (High).
 enum class Kind : std::uint8_t { kCluster, kSkinned, kSharedRig, kInter };
 
 struct Size {

@@ -61,7 +61,7 @@ bool add_clips(const rlpc_encode_options& options, std::vector<Clip>& clips) {
   return true;
 }
 
-// None if a value is outside its enumeration.
+// Converts the options; none if a value is outside its enumeration.
 std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
   EncoderSettings settings;
   switch (options.profile) {

@@ -38,6 +38,7 @@ extern "C" {
 #endif
 
 // NOLINTBEGIN(readability-identifier-naming): C naming.
+// Handle of an encoder.
 typedef struct rlpc_encoder rlpc_encoder;
 
 #define RLPC_MAX_TEMPORAL_LAYERS 8
@@ -61,8 +62,10 @@ typedef struct rlpc_frame_format {
 // change.
 typedef enum rlpc_profile { RLPC_BASELINE = 0, RLPC_MAIN = 1, RLPC_HIGH = 2 } rlpc_profile;
 
+// Search effort; does not affect decoders.
 typedef enum rlpc_preset { RLPC_FAST = 0, RLPC_MEDIUM = 1, RLPC_SLOW = 2 } rlpc_preset;
 
+// Error or rate that the encoder aims for.
 typedef enum rlpc_target {
   RLPC_TARGET_KG = 1,         // KG error in per cent
   RLPC_TARGET_BPVF = 2,       // bits per vertex and frame
@@ -80,12 +83,14 @@ typedef enum rlpc_gof_kind {
   RLPC_KIND_FRAMES = 3,
 } rlpc_gof_kind;
 
+// Hashes of decoded positions in the stream: none, one per GOF, one per frame.
 typedef enum rlpc_hash_mode {
   RLPC_HASH_NONE = 0,
   RLPC_HASH_GOF = 1,
   RLPC_HASH_FRAME = 2,
 } rlpc_hash_mode;
 
+// Options of the encoder. rlpc_encode_options_init sets the defaults.
 typedef struct rlpc_encode_options {
   size_t struct_size;  // rlpc_encode_options_init sets it
   uint32_t profile;    // default RLPC_MAIN
@@ -126,6 +131,7 @@ typedef struct rlpc_encode_options {
   size_t num_clips;
 } rlpc_encode_options;
 
+// Report on a finished stream.
 typedef struct rlpc_encode_report {
   size_t struct_size;  // rlpc_encoder_finish sets it
   uint64_t num_bytes;

@@ -18,7 +18,7 @@ struct SingleMesh {
   std::vector<Triangle> triangles;
   std::vector<MeshPolygon> polygons{};  // only those of more than one triangle, in order
   PolygonCuts cuts{};                   // polygons whose triangles are not a fan
-  std::optional<FrameRate> frame_rate;  // from a comment "frame_rate N/D" in the file
+  std::optional<FrameRate> frame_rate;  // comment "frame_rate N/D" in the file
   SourceAttributes attributes{};
   SourceMaterials materials{};
   std::string asset{};                        // see FrameSource::asset()

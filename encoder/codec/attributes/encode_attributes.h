@@ -19,7 +19,7 @@ struct AttributeReport {
   std::string name;
   std::uint64_t values = 0;
   std::uint64_t bits = 0;      // in the stream
-  double largest_error = 0.0;  // of a component, in its units; normals: degrees
+  double largest_error = 0.0;  // largest of a component, in its units; normals: degrees
   double rms_error = 0.0;      // normals only, degrees
   bool is_normal = false;
   bool is_smoothing = false;

@@ -12,7 +12,7 @@
 namespace rlpc {
 
 struct QuantisedAttribute {
-  AttributeHeader header;             // without prediction
+  AttributeHeader header;             // prediction not set
   std::vector<std::uint32_t> values;  // [value][component]; floats as ordered bits
 };
 

@@ -132,7 +132,7 @@ class SubspaceIteration {
     }
   }
 
-  // None if too many vectors are wanted for this method.
+  // Finds the vectors; none if too many are wanted for this method.
   std::optional<EigenPairs> find(std::size_t max_count, double least) {
     constexpr std::size_t kFirstCount = 16;
     constexpr double kMargin = 0.5;  // part of `least`; the block grows until a value is below

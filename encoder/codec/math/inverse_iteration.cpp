@@ -132,7 +132,7 @@ bool orthonormalise(std::vector<double>& columns, std::size_t count) {
   return false;
 }
 
-// False if the vector is zero or not finite.
+// Scales a vector to unit length. Returns false if it is zero or not finite.
 bool normalise(std::vector<double>& x) {
   double largest = 0.0;
   for (const double v : x) largest = std::max(largest, std::abs(v));

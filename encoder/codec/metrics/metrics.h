@@ -21,7 +21,7 @@ struct FrameMetrics {
   // Vertices of the original that moved since the previous frame; in frame 0: all.
   std::uint32_t moved_vertices = 0;
   // PSNRs are infinite if the frame is exact.
-  double diagonal_psnr_db = 0;    // as in Metrics
+  double diagonal_psnr_db = 0;    // see Metrics
   double ramanathan_psnr_db = 0;  // see MetricsAccumulator
 };
 
@@ -43,7 +43,7 @@ struct Metrics {
   double max_error_percent = 0;       // per cent of the diagonal; infinite if only that is 0
   std::uint32_t max_error_frame = 0;  // the first frame and vertex with this error
   std::uint32_t max_error_vertex = 0;
-  double diagonal = 0;          // of the original's bounding box over all frames, units
+  double diagonal = 0;          // the original's bounding box over all frames, units
   double max_displacement = 0;  // largest in the original between adjacent frames, units
   // 20 log10(diagonal / rms_error): the peak is the diagonal. Infinite without an error.
   double diagonal_psnr_db = 0;

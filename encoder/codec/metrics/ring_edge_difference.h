@@ -32,8 +32,7 @@ class RingEdgeDifference {
 
   struct Parts {
     double spatial = 0;
-    double previous_temporal =
-        0;  // of the previous frame, both of whose virtual edges are now known
+    double previous_temporal = 0;  // the previous frame's: both its virtual edges are now known
   };
   Parts add_frame(std::span<const float> original, std::span<const float> decoded);
 
@@ -48,7 +47,7 @@ class RingEdgeDifference {
   double temporal_part(std::span<const float> original, std::span<const float> decoded);
 
   std::uint32_t num_vertices_;
-  std::vector<std::array<std::uint32_t, 2>> edges_;  // without duplicates
+  std::vector<std::array<std::uint32_t, 2>> edges_;  // no duplicates
   double frame_distance_ = 0;                        // dt d
   std::vector<float> previous_original_;
   std::vector<float> previous_decoded_;

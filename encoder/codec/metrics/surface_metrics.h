@@ -18,7 +18,7 @@ namespace rlpc {
 
 struct FrameSurface {
   double sted_spatial = 0;
-  double sted_temporal = 0;  // of the step from the previous frame; 0 in the first frame
+  double sted_temporal = 0;  // for the step from the previous frame; 0 in the first frame
   double ring_spatial = 0;
   double ring_temporal = 0;      // 0 in the first and the last frame
   double mean_normal_angle = 0;  // degrees

@@ -13,7 +13,7 @@ namespace {
 
 TEST(KMeans, FindsClumps) {
   std::minstd_rand random(9);
-  std::vector<double> points;  // of four dimensions, in turn at three places
+  std::vector<double> points;  // four dimensions, in turn at three places
   for (int i = 0; i < 300; ++i) {
     for (int d = 0; d < 4; ++d) {
       points.push_back((i % 3 == 0   ? 0

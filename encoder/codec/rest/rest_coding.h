@@ -14,7 +14,7 @@ namespace rlpc {
 struct RestEncoding {
   RestSettings settings;
   std::vector<std::int32_t> residual;     // [num_vertices][3]
-  std::vector<std::int32_t> values;       // as decoded, [num_vertices][3]
+  std::vector<std::int32_t> values;       // [num_vertices][3], as decoded
   std::vector<Counterpart> counterparts;  // [num_vertices], or empty
   double bits = 0.0;                      // bits of settings, residuals and counterparts
   double cost = 0.0;                      // D + lambda R, in squared steps of rest positions

@@ -11,7 +11,7 @@ namespace rlpc {
 
 struct ConnectivityCode {
   std::vector<std::uint8_t> payload;
-  std::vector<Triangle> triangles;          // as decoded from the payload
+  std::vector<Triangle> triangles;          // decoded from the payload
   std::vector<std::uint32_t> input_vertex;  // [decoded vertex], index in the input
 };
 

@@ -72,7 +72,7 @@ class FrameUnitWriter {
  private:
   struct UnitFrame {
     std::uint32_t frame = 0;
-    std::uint32_t distance = 0;  // to the frame that it repeats, or is predicted from; or 0
+    std::uint32_t distance = 0;  // places to its repeated or reference frame; 0: neither
     bool is_repeated = false;
     std::uint32_t crc = 0;
   };

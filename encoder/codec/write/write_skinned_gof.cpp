@@ -36,7 +36,7 @@ std::vector<std::uint8_t> write_bone_section(const SharedRig& rig, Unit unit,
 // 6.12 slice_unit( ): writes the slices of a GOF or shared rig in order.
 class SliceWriter {
  public:
-  // shared: the shared rig of a skinned GOF with a shared rig.
+  // shared: the shared rig that a skinned GOF uses.
   SliceWriter(const SharedRig& gof, const OrderedMesh& mesh, Unit unit,
               const TrackFrames& frames, const SharedRig* shared = nullptr)
       : gof_(gof),

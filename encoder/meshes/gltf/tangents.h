@@ -21,7 +21,7 @@ struct TangentSource {
 struct TangentCount {
   std::uint64_t corners = 0;   // compared ones: texture coordinates have an area
   std::uint64_t apart = 0;     // differ by more than kTangentsApart
-  std::uint64_t inverted = 0;  // of these: differ by more than a right angle, or in handedness
+  std::uint64_t inverted = 0;  // among these: by more than a right angle, or in handedness
 
   void add(const TangentCount& other);
 };

@@ -69,7 +69,7 @@ class MtlReader {
  private:
   struct Material {
     Mtl mtl;
-    std::optional<double> shine_roughness;  // from Ns
+    std::optional<double> shine_roughness;  // value of Ns
   };
 
   // Notes a dropped keyword. Keywords come from the file, so only so many are held.

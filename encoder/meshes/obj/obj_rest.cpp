@@ -10,7 +10,7 @@ namespace {
 
 struct Keyword {
   std::string_view word;
-  std::string_view kind;  // what it describes, in the words of users; empty: nothing by itself
+  std::string_view kind;  // contents, in the words of users; empty: nothing by itself
 };
 
 constexpr std::string_view kFreeForm = "free-form curves and surfaces";

@@ -33,8 +33,8 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kText;
   std::vector<PlyElement> elements;     // in the order of the file
-  std::optional<FrameRate> frame_rate;  // from "comment frame_rate N/D"
-  std::vector<std::string> textures;    // from "comment TextureFile NAME"
+  std::optional<FrameRate> frame_rate;  // "comment frame_rate N/D"
+  std::vector<std::string> textures;    // "comment TextureFile NAME"
   bool has_info = false;                // there are lines "obj_info"
   std::size_t body = 0;                 // offset of the first byte after the header
   std::uint64_t body_line = 0;          // number of the line that begins there

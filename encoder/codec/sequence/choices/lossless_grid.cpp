@@ -47,7 +47,7 @@ InputResult<FinestCoordinate> find_finest(FrameSource& source) {
   return finest;
 }
 
-// None if the grid cannot represent the box within the limits of the format.
+// Returns none if the grid cannot represent the box within the limits of the format.
 std::optional<GridChoice> grid_of_step(const Extent& extent, int log2_step) {
   const double per_step = exact_exp2(-log2_step);
   const auto position = [&](double x) { return std::floor(x * per_step + 0.5); };

@@ -12,7 +12,7 @@
 namespace rlpc {
 
 struct KeptRig {
-  std::shared_ptr<const SharedRig> rig;  // without residuals of vertices
+  std::shared_ptr<const SharedRig> rig;  // has no residuals of vertices
   std::shared_ptr<const RigRecon> recon;
   std::array<std::vector<std::int32_t>, 3> rest;  // rest positions, 1/16 grid units
 };

@@ -58,14 +58,14 @@ struct SkinnedSettings {
 TrackOptions track_options(const SkinnedSettings& settings);
 
 struct SkinnedAnalysis {
-  SharedRig rig;  // without trajectories and geometry weights; bones without motion
+  SharedRig rig;  // no trajectories or geometry weights; bones without motion
   // The GOFs of the span, with their bones; without trajectories.
   std::vector<SkinnedGof> gofs;
-  std::vector<BoneMotion> bones;                  // as decoded, in all frames
-  std::array<std::vector<std::int32_t>, 3> rest;  // as decoded
+  std::vector<BoneMotion> bones;                  // decoded values, in all frames
+  std::array<std::vector<std::int32_t>, 3> rest;  // decoded values
   ComponentsByRow pc;
   double step_of_components = 0.0;  // step of the analysis that found the components
-  std::vector<float> spatial_left;  // from find_spatial_left()
+  std::vector<float> spatial_left;  // find_spatial_left()
 };
 
 // Chooses all steps so that every coded value adds about the same squared error, step^2 / 12,

@@ -37,7 +37,7 @@ CodedSpan code_skinned_span(const OrderedMesh& mesh, const SkinnedAnalysis& anal
 
 // Returns the only GOF of a span, with vertices of its own.
 SkinnedGof merge_into_gof(CodedSpan coded);
-// Trajectories that a skinned GOF with a shared rig has besides those of the rig.
+// Trajectories that a skinned GOF adds to those of its shared rig.
 struct LocalGroup {
   std::vector<Trajectory> trajectories;  // empty: none is worth its bits
   std::vector<std::int32_t> residual;    // [num_vertices][trajectory]
@@ -49,10 +49,10 @@ struct LocalGroup {
 //   shared    the shared rig
 LocalGroup code_local_group(const OrderedMesh& mesh, const SkinnedAnalysis& analysis,
                             const RigRecon& shared, SkinnedSettings settings, double step);
-// Adds a local component group, unless it is empty, to a skinned GOF with a shared rig.
+// Adds a local component group, unless it is empty, to a skinned GOF that uses a shared rig.
 void add_local_group(LocalGroup group, SkinnedGof& gof);
 
-// Makes a GOF of a span a skinned GOF with a shared rig.
+// Lets a GOF of a span use a shared rig.
 void use_rig(std::shared_ptr<const SharedRig> rig, SkinnedGof& gof);
 
 }  // namespace rlpc

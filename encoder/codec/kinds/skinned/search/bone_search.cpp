@@ -145,7 +145,7 @@ void BoneSearch::grow_all(double step) {
     });
     progress_(kFitted * static_cast<double>(i + 1) / static_cast<double>(counts.size()));
     const double of_count = *std::min_element(cost.begin(), cost.end());
-    const double next = of_count - (last - of_count);  // if it gains as much again
+    const double next = of_count - (last - of_count);  // assumes the same gain again
     last = of_count;
     const bool telling = !all && i + 1 >= kTelling;
     const bool promising = of_count < worth_trying(step);

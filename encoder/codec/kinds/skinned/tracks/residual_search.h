@@ -101,7 +101,7 @@ class ResidualSearch {
  private:
   struct Survivor {
     double cost = 0.0;
-    std::vector<RunningMagnitude> magnitude;  // of coordinate c, [level]
+    std::vector<RunningMagnitude> magnitude;  // [level], coordinate c
     std::vector<Value> values;                // [window_], by frame
     // State at the next place:
     typename Series::Predicted predicted;

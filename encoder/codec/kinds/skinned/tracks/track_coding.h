@@ -15,7 +15,7 @@ namespace rlpc {
 struct TrackOptions {
   bool refine = true;        // also try transmitted weights, fitted to the series
   bool nearest = false;      // round residuals to nearest; else errors are below one step
-  int track_levels = 0;      // of the GOF; above 0: hierarchical orders are tried too
+  int track_levels = 0;      // above 0: hierarchical orders are tried too
   bool only_levels = false;  // only these are tried, as cutting needs levels
   bool fast = false;   // fewer predictors, and fewer survivors in the search for residuals
   bool draft = false;  // only the likeliest predictor and no search, to compare candidates
