@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
 using Positions = std::vector<std::int32_t>;
 
-// Bytes that have to be loaded in blocks before they can be read.
+// Bytes that must be loaded in blocks before they can be read.
 struct Loaded {
   static constexpr std::uint64_t kBlock = 64;
 
@@ -60,7 +60,7 @@ class LoadedSource final : public ByteSource {
   Loaded& loaded_;
 };
 
-// Calls it again whenever bytes were missing.
+// Repeats a call whenever bytes were missing.
 template <class Call>
 bool completed(Loaded& loaded, const SeekingDecoder& decoder, const Call& call) {
   while (!call()) {
@@ -169,8 +169,8 @@ TEST(SeekingDecoder, DecodesAttributesBetweenFramesWhileTheStreamIsBeingLoaded) 
 }
 
 TEST(SeekingDecoder, ReadsAnAssetWhileTheStreamIsBeingLoaded) {
-  const Bytes bytes =
-      contents(fs::path(RLPC_SOURCE_DIR) / "streams" / "v1.2" / "accept" / "AST" / "AST-0001a.rlpc");
+  const Bytes bytes = contents(fs::path(RLPC_SOURCE_DIR) / "streams" / "v1.2" / "accept" /
+                               "AST" / "AST-0001a.rlpc");
   Loaded loaded{bytes, {}, 0, 0};
   SeekingDecoder decoder([&] { return std::make_unique<LoadedSource>(loaded); }, {});
   ASSERT_TRUE(completed(loaded, decoder, [&] { return decoder.open(); }));
@@ -203,8 +203,8 @@ TEST(SeekingDecoder, FramesAreDecodedAfterAnErrorOfAttributes) {
 }
 
 TEST(SeekingDecoder, OfAnotherFrameLoadsNoMoreThanItsGof) {
-  const Bytes bytes =
-      contents(fs::path(RLPC_SOURCE_DIR) / "streams" / "v1.0" / "accept" / "IDX" / "IDX-0001a.rlpc");
+  const Bytes bytes = contents(fs::path(RLPC_SOURCE_DIR) / "streams" / "v1.0" / "accept" /
+                               "IDX" / "IDX-0001a.rlpc");
   Loaded loaded{bytes, {}, 0, 0};
   const auto frames = decoded_in_order(bytes);
   ASSERT_GT(frames.size(), 1U);
@@ -217,8 +217,8 @@ TEST(SeekingDecoder, OfAnotherFrameLoadsNoMoreThanItsGof) {
 }
 
 TEST(SeekingDecoder, CountsTheFramesOfAStreamThatWasCutOff) {
-  const Bytes whole =
-      contents(fs::path(RLPC_SOURCE_DIR) / "streams" / "v1.2" / "accept" / "FRM" / "FRM-0030a.rlpc");
+  const Bytes whole = contents(fs::path(RLPC_SOURCE_DIR) / "streams" / "v1.2" / "accept" /
+                               "FRM" / "FRM-0030a.rlpc");
   const auto count = [&](std::size_t size) {
     const Bytes bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
     SeekingDecoder decoder([&] { return memory_source(bytes); }, {});
