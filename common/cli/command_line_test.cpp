@@ -30,7 +30,7 @@ struct Program {
     add_help(app, {"IN [OPTIONS]", {"Main"}, "Examples\n  program x", "Details"}, "1.2.3");
   }
 
-  // The exit code; 1000: the program continues.
+  // Returns the exit code; 1000 if the program continues.
   int run(std::vector<std::string> words) {
     words.insert(words.begin(), "program");
     std::vector<char*> argv;

@@ -153,7 +153,7 @@ TEST_F(OutputFileTest, SupportsNamesOfMaximumLength) {
     EXPECT_EQ(content(name), "text");
   }
   const std::string name = std::string(longest % 2, 'n') + [&] {
-    std::string text;  // of characters of two bytes
+    std::string text;  // characters of two bytes
     while (text.size() + 2 <= longest) text += "\xC3\xA4";
     return text;
   }();

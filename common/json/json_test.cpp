@@ -1,4 +1,4 @@
-// Which texts are read, and why others are not.
+// Tests which texts are read, and why others are rejected.
 #include "common/json/json.h"
 
 #include <gtest/gtest.h>
@@ -111,7 +111,7 @@ TEST(WriteJson, ReplacesWhatIsNotUtf8) {
   EXPECT_EQ(json_text(json("\xC3\xA4"), -1, true), "\"\\u00e4\"");
 }
 
-// Counts of a tree, by walking it. Names that are repeated are there once.
+// Counts the parts of a tree. Repeated names occur once.
 void count(const json& value, std::uint64_t depth, JsonShape& shape) {
   if (value.is_string() || value.is_structured()) ++shape.blocks;
   (value.is_object() ? shape.members : shape.elements) +=

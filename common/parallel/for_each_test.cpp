@@ -87,7 +87,7 @@ TEST(ForEach, RethrowsOnceNoPassRuns) {
     if (count == 1) {
       EXPECT_EQ(begun, 8);
     }
-    // The threads go on.
+    // The threads continue.
     std::atomic<int> calls = 0;
     for_each(100, [&](std::size_t) { ++calls; });
     EXPECT_EQ(calls, 100);

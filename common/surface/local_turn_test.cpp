@@ -18,7 +18,7 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// About an axis of length 1 (Rodrigues).
+// Rotation about an axis of length 1 (Rodrigues).
 struct Rotation {
   Vec3 axis;
   double angle;
@@ -37,10 +37,10 @@ struct Rotation {
 
 constexpr Vec3 kAxis{0.48, 0.6, 0.64};
 
-// Edges around a vertex, each with its neighbour a triangle.
+// Edges around a vertex, each of which forms a triangle with the next.
 const std::vector<Vec3> kRing{{2, 0, 0.3}, {0.5, 1.5, 0}, {-1, 1, 0.2}, {-1, -2, 0.1}};
 
-// What the ring says when its edges become others.
+// Returns the turn of a ring whose edges change.
 LocalTurn turn_of(const std::vector<Vec3>& before, const std::vector<Vec3>& after) {
   LocalTurn turn;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -101,8 +101,7 @@ TEST(LocalTurn, NoiseTurnsByAsMuchAsItMovesTheEdges) {
   }
 }
 
-// The normal of the surface turns by half a turn where a small fold opens; the surface does
-// not.
+// The normal of the surface makes half a turn where a small fold opens; the surface does not.
 TEST(LocalTurn, FoldsHardlyTurn) {
   std::vector<Vec3> folded = kRing;
   for (Vec3& edge : folded) edge[1] *= 0.01;

@@ -36,7 +36,7 @@ const std::vector<std::int32_t> kSecond{-100, 0,           102, -99, 2147483647,
 
 class FrameSinkTest : public ScratchFolderTest {
  protected:
-  // All paths below the folder, sorted.
+  // Returns all paths below the folder, sorted.
   std::vector<std::string> files() const {
     std::vector<std::string> names;
     for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
@@ -179,7 +179,7 @@ TEST_F(FrameSinkTest, KeepsExactlyTheFramesOfAPartialRlpd) {
     }
     EXPECT_FALSE((*sink)->finish());
     EXPECT_EQ(content("a.rlpd").size(), 56 + 36 * frames);
-    EXPECT_EQ(content("a.rlpd")[16], 2);  // still announces two
+    EXPECT_EQ(content("a.rlpd")[16], 2);  // still declares two
   }
 }
 

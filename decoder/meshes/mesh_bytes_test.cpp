@@ -142,7 +142,7 @@ TEST(MeshBytes, SetsOfOtherShapesAreLeftOut) {
   EXPECT_EQ(MeshAttributes(square()).uv_numbers().size(), 10U);
 }
 
-// Numbers with up to six digits in an OBJ file come back as they were: readers flip v.
+// Numbers with up to six digits in an OBJ file read back exactly, although readers flip v.
 TEST(MeshBytes, TextureCoordinatesReadBackAsTheyWere) {
   std::mt19937 random(1);
   SinkOptions options = square();

@@ -20,7 +20,7 @@ std::string with_views(const std::string& members, const std::string& views) {
                 kPng);
 }
 
-// Three triangles, of two materials and two parts.
+// Makes three triangles with two materials and two parts.
 SinkOptions mesh_with(const std::string& asset) {
   SinkOptions options;
   options.num_vertices = 3;
@@ -75,7 +75,7 @@ TEST(ObjMaterials, ImagesOfExtensionsAreFound) {
       mesh_with(with_views(kWebp, R"({"buffer":0,"byteOffset":0,"byteLength":16})"));
   const auto files = ObjMaterials(options).files("walk");
   ASSERT_EQ(files.size(), 2U);
-  // It is opaque, whatever the alpha.
+  // The material is opaque, whatever its alpha.
   EXPECT_NE(files[0].bytes.find("\nKd 1 1 1\nmap_Kd walk_0.png\nnewmtl"), std::string::npos)
       << files[0].bytes;
 }
@@ -104,7 +104,7 @@ TEST(ObjMaterials, FacesHaveTheCoordinatesOfTheirImage) {
   options.attributes.push_back(coordinates("uv1", 2));
   const std::string obj =
       make_mesh_bytes(SinkFormat::kObj, options, "")->frame(std::vector<std::int32_t>(9));
-  // Triangles of materials 1 (moved), 0, and 5, whose set is not there.
+  // Triangles of materials 1 (moved), 0, and 5, whose set is missing.
   EXPECT_NE(obj.find("vt 1.5 0.75\nvt 2 0.75\nvt 1.5 0.25\nvt 0.5 1\nvt 0.75 1\nvt 0.5 0.5\n"),
             std::string::npos)
       << obj;
@@ -148,7 +148,7 @@ TEST(StreamAsset, WhatIsNoGlbIsLeftOut) {
   }
 }
 
-// glTF has no materials that are null, and no references to what is not there.
+// glTF allows no null materials and no references to missing objects.
 TEST(StreamAsset, BrokenPartsAreLeftOutAndNamed) {
   const std::string bad = glb_of(
       R"({"materials":[{"name":"a","normalTexture":{"index":-1},"pbrMetallicRoughness":

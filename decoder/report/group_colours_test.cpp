@@ -23,7 +23,7 @@ std::vector<std::uint32_t> one_each(std::uint32_t num_groups) {
 }
 
 TEST(GroupColours, AreAllDifferentUpToThirtySix) {
-  std::vector<Triangle> all;  // everybody is everybody's neighbour
+  std::vector<Triangle> all;  // all groups are neighbours of each other
   for (std::uint32_t a = 0; a < 36; ++a) {
     for (std::uint32_t b = 0; b < a; ++b) all.push_back({a, b, b});
   }
@@ -33,7 +33,7 @@ TEST(GroupColours, AreAllDifferentUpToThirtySix) {
 }
 
 TEST(GroupColours, AreDistinctInNeighbours) {
-  // A grid whose vertices are groups of their own: no vertex has more than six neighbours.
+  // A grid with a group per vertex: no vertex has more than six neighbours.
   constexpr std::uint32_t kSide = 30;
   std::vector<Triangle> triangles;
   for (std::uint32_t v = 0; v + kSide < kSide * kSide; ++v) {
@@ -61,7 +61,7 @@ TEST(GroupColours, OfARampGetLighter) {
   EXPECT_EQ(ramp_colours(1).size(), 1U);
 }
 
-// The coordinates of red are those that the author of OKLab gives.
+// The coordinates of red are those published by the author of OKLab.
 TEST(GroupColours, AreWrittenAsSrgb) {
   EXPECT_EQ(colour_text({0, 0, 0}), "#000000");
   EXPECT_EQ(colour_text({1, 0, 0}), "#ffffff");

@@ -21,7 +21,7 @@ std::vector<Path> paths_of(const std::string& svg) {
   return paths;
 }
 
-// A square of two triangles, and one behind it that it hides.
+// Square of two triangles, and a hidden square behind it.
 const std::vector<Point> kPoints{{0, 0, 5},   {60, 0, 5},  {60, 60, 5}, {0, 60, 5},
                                  {10, 10, 1}, {50, 10, 1}, {50, 50, 1}};
 const CoarseMesh kMesh{{0, 1, 2, 3, 4, 5, 6}, {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}}};

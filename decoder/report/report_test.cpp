@@ -58,7 +58,7 @@ TEST(Report, LongLinesShowTheLargestOfSeveralFrames) {
             std::string::npos);
 }
 
-// The values that the script of the page shows, in groups of 2.
+// Returns the values that the script of the page shows, in groups of 2.
 std::string shown_in_pairs(const std::vector<double>& first, bool worst_is_smallest) {
   ChartSeries series{"e", "red", std::vector<double>(2000, 1.0), worst_is_smallest};
   std::copy(first.begin(), first.end(), series.values.begin());

@@ -29,7 +29,7 @@ TEST(VertexGroups, SeedVerticesAreInTheFirstClusterOfTheirs) {
   EXPECT_EQ(groups.seeds[1], gof.clusters[2].seed_vertex);
 }
 
-// A single triangle, of which all vertices are in the base.
+// Tests a single triangle, whose vertices are all in the base.
 class Bones : public testing::Test {
  protected:
   Bones() {

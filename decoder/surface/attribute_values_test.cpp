@@ -12,7 +12,7 @@ namespace {
 const std::vector<Triangle> kSquare{{0, 1, 2}, {0, 2, 3}};
 const Vector<std::int32_t> kFlat{0, 0, 0, 100, 0, 0, 100, 100, 0, 0, 100, 0};
 
-// Turned by an angle about the x axis, moved and larger.
+// Returns the square turned by an angle about the x axis, moved and larger.
 std::vector<float> turned(double angle) {
   std::vector<float> xyz;
   for (std::size_t i = 0; i < kFlat.size(); i += 3) {
@@ -49,7 +49,7 @@ void expect_near(const std::array<float, 3>& found, const std::array<double, 3>&
 }
 
 TEST(FrameNormals, UnitVectorsAreThoseOfTheFirstFrameThere) {
-  // Straight up, towards x, and two more.
+  // Straight up, towards x, and two others.
   const AttributeSet set = unit_vectors({511, 511, 1022, 511, 700, 400, 511, 900});
   FrameNormals normals(set, kSquare, 4);
   const std::vector<float> flat = turned(0.0);
@@ -88,7 +88,7 @@ TEST(FrameNormals, IntegersAndFloatsOfAFrameGiveTheSame) {
   }
 }
 
-// Where the surface has no axes in a frame.
+// The surface has no axes in a frame.
 TEST(FrameNormals, WithoutASurfaceThereIsStillANormal) {
   const AttributeSet set = unit_vectors({511, 511, 1022, 511, 700, 400, 511, 900});
   FrameNormals collapses(set, kSquare, 4);
@@ -96,7 +96,7 @@ TEST(FrameNormals, WithoutASurfaceThereIsStillANormal) {
   expect_near(normal_at(collapses, nothing, 1), {1.0, 0.0, 0.0});
 }
 
-// A part that is not there in the first frame: all its vertices at a point, or on a line.
+// A part without a surface in the first frame: all its vertices are at a point, or on a line.
 TEST(FrameNormals, UnitVectorsWithoutAFirstSurfaceFollowLaterOnes) {
   AttributeSet set = unit_vectors({511, 511, 1022, 511, 700, 400, 511, 900});
   const double angle = 0.5;
@@ -112,7 +112,7 @@ TEST(FrameNormals, UnitVectorsWithoutAFirstSurfaceFollowLaterOnes) {
   }
 }
 
-// The first vertex has the normal that its triangles give it: it follows them where they bend.
+// The first vertex has the normal of its triangles, and follows them where they bend.
 TEST(FrameNormals, UnitVectorsWithoutResidualFollowTheSurface) {
   const AttributeSet set = unit_vectors({511, 511, 1022, 511, 511, 511, 511, 900});
   FrameNormals normals(set, kSquare, 4);

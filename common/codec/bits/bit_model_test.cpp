@@ -37,7 +37,7 @@ TEST(BitModel, NeverLeavesItsBounds) {
     std::mt19937 random(seed);
     BitModel model;
     for (int i = 0; i < 20000; ++i) {
-      // Long runs of one value, which approach both bounds, and sudden changes.
+      // Long runs of one value approach both bounds; then it changes suddenly.
       const bool bin = random() % 8 == 0;
       const std::uint64_t run = 1 + random() % (1U << (random() % 11));
       for (std::uint64_t k = 0; k < run && i < 20000; ++k, ++i) {

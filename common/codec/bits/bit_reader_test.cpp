@@ -18,7 +18,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr Range kAny{0, 0xFFFFFFFE};
 constexpr Range kAnySigned{-2147483647, 2147483647};
 
-// Exactly `size` bytes on the heap, so that sanitizers detect a read past them.
+// Copies exactly `size` bytes to the heap, so that sanitizers detect a read past them.
 Bytes prefix_of(const Bytes& bytes, std::size_t size) {
   return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)};
 }

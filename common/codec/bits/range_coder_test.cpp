@@ -15,7 +15,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// A bin with one of a few models, or bypass bits.
+// Bin with one of a few models, or bypass bits.
 struct Symbol {
   int model = 0;  // index; -1: bypass
   int bits = 1;
@@ -38,7 +38,7 @@ Bytes encode(const Symbols& symbols) {
   return re.finish();
 }
 
-// The values of the same symbols, decoded from the section.
+// Values of the same symbols, decoded from the section.
 struct Decoded {
   std::vector<std::uint32_t> values;
   bool starts_legally = false;
@@ -74,7 +74,7 @@ Bytes expect_round_trip(const Symbols& symbols) {
   Bytes longer = section;
   longer.push_back(0);
   EXPECT_FALSE(decode(longer, symbols).at_exact_end);
-  const Bytes shorter(section.begin(), section.end() - 1);  // of exact size on the heap
+  const Bytes shorter(section.begin(), section.end() - 1);  // exact size on the heap
   const Decoded cut = decode(shorter, symbols);
   // The remaining bytes may be a complete section of other symbols, but not of these.
   EXPECT_FALSE(cut.at_exact_end && cut.values == expected);
@@ -138,7 +138,7 @@ TEST(RangeCoder, AnEmptySectionIsOneByte) {
   EXPECT_TRUE(empty.overrun());
 }
 
-// The symbols that a decoder reads from arbitrary bytes.
+// Returns the symbols that a decoder reads from arbitrary bytes.
 Symbols symbols_of(const Bytes& bytes, std::size_t count, bool with_rigs) {
   RangeDecoder rd(bytes);
   std::vector<BitModel> models(kModels);

@@ -33,7 +33,7 @@ TEST(TrackOrder, GoesLevelByLevel) {
   EXPECT_EQ(neighbours, (std::vector<int>{0, 0, 0, 2, 2, 0, 2, 4, 4, 4, 2}));
 }
 
-// Every frame has one place; what predicts it comes earlier, and not from a higher level.
+// Every frame has one place; its predecessors come earlier, and not from a higher level.
 TEST(TrackOrder, IsThatOfPrediction) {
   for (std::uint32_t num_frames = 1; num_frames < 300; num_frames += 1 + num_frames / 7) {
     for (int levels = 0; levels <= kMaxTrackLevels; ++levels) {
@@ -76,7 +76,7 @@ TEST(PlacesOfLayer, OfASequentialTrackAreAllInTheFirst) {
   EXPECT_TRUE(places_of_layer({11, 2, 3}, 0, 2).empty());
 }
 
-// Together, layer by layer, they are the order of the track.
+// The places of all layers together are the order of the track.
 TEST(PlacesOfLayer, FollowTheOrderOfTheTrack) {
   for (int levels = 0; levels <= kMaxTrackLevels; ++levels) {
     for (int layers = 1; layers <= levels + 1; ++layers) {

@@ -20,7 +20,7 @@ struct Factor {
   int spatial_bits = 1;
 };
 
-// The plain twin of ComponentSum: 8.5.3 literally, in 128 bits.
+// Plain twin of ComponentSum: 8.5.3 literally, in 128 bits.
 std::vector<Int128> plain_sum(const std::vector<Factor>& factors, std::size_t num_values,
                               std::size_t frame) {
   std::vector<Int128> sums(num_values, 0);
@@ -44,7 +44,7 @@ ComponentSum sum_of(const std::vector<Factor>& factors, std::size_t num_values,
   return {spatial, temporal, num_frames, loops};
 }
 
-// All values of a row.
+// Returns all values of a row.
 std::vector<std::int64_t> sums_of(const ComponentSum& set, std::size_t row) {
   std::vector<std::int64_t> sums;
   for (std::size_t tile = 0; sums.size() < set.num_values(); ++tile) {

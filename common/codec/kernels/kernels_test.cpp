@@ -14,7 +14,7 @@
 namespace rlpc {
 namespace {
 
-// Numbers of random width, often at the extremes.
+// Returns numbers of random width, often at the extremes.
 std::int64_t random_within(std::mt19937_64& random, std::int64_t least, std::int64_t most) {
   switch (random() % 8) {
     case 0:

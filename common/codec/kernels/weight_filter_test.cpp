@@ -1,4 +1,4 @@
-// Every loop that the machine can run against the text of the specification (8.15).
+// Compares every loop that the machine supports with the text of the specification (8.15).
 #include "common/codec/kernels/weight_filter.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ class EachFilter : public testing::TestWithParam<std::size_t> {
     text_.start_spread(shift);
   }
 
-  // 8.19: the last five of `size` are not neighbours.
+  // 8.19: starts a filter whose last five of `size` offsets are not neighbours.
   void start_of_frames(std::size_t ring, std::size_t size, std::mt19937_64& random) {
     start(ring, size, kSpreadShift, random);
     text_.is_of_frames = true;
@@ -62,7 +62,7 @@ class EachFilter : public testing::TestWithParam<std::size_t> {
     }
   }
 
-  // Within 2^bits; often at the ends, or zero.
+  // Returns a number within 2^bits; often at the ends, or zero.
   static std::int64_t number(std::mt19937_64& random, int bits) {
     const std::int64_t most = std::int64_t{1} << bits;
     switch (random() % 8) {
@@ -99,7 +99,7 @@ TEST_P(EachFilter, AdaptsToAnyOffsetsAndErrors) {
   }
 }
 
-// The same direction again and again, or opposite ones, where spread is closest to losing its
+// The same direction repeatedly, or opposite directions, where spread is closest to losing its
 // definiteness.
 TEST_P(EachFilter, AdaptsToOffsetsThatHardlyDiffer) {
   for (unsigned seed = 0; seed < 60; ++seed) {
@@ -143,8 +143,8 @@ TEST_P(EachFilter, AdaptsToAnyFrames) {
   }
 }
 
-// Samples without noise, in few directions: the sharpest that there are. Nothing of them may be
-// left over or turn negative by rounding, or the filter unlearns the more it sees.
+// Samples without noise, in few directions: the sharpest possible. Rounding must not leave a
+// remainder or a negative value, or the filter diverges with more samples.
 TEST_P(EachFilter, LearnsFromSharpSamplesWithoutDiverging) {
   constexpr std::size_t kSize = 24;
   constexpr std::size_t kDirections = 5;

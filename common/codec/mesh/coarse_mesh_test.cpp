@@ -31,7 +31,7 @@ Mesh grid(std::uint32_t width, std::uint32_t height, bool closed) {
   return {width * height, grid_triangles(width, height, closed)};
 }
 
-// A sphere: two poles and `rings` rings of n vertices.
+// Makes a sphere: two poles and `rings` rings of n vertices.
 Mesh sphere(std::uint32_t rings, std::uint32_t n) {
   Mesh mesh{2 + rings * n, {}};
   for (std::uint32_t i = 0; i < n; ++i) {
@@ -57,7 +57,7 @@ void shuffle(Mesh& mesh, unsigned seed) {
   for (Triangle& t : mesh.triangles) t = {place[t[0]], place[t[1]], place[t[2]]};
 }
 
-// Also with triangles that are no surface.
+// Makes a mesh, also with triangles that are not a surface.
 Mesh random_mesh(unsigned seed) {
   std::mt19937 random(seed);
   const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
@@ -77,11 +77,10 @@ struct Surface {
   std::int64_t euler_characteristic = 0;
 };
 
-// Requires that a mesh is an oriented manifold, with or without a boundary, of all its
-// vertices.
+// Requires that a mesh is an oriented manifold of all its vertices, with or without a boundary.
 Surface surface(const CoarseMesh& mesh) {
   std::set<Edge> edges;
-  // By vertex: where its triangles lead, from the vertex before to the one after.
+  // [vertex] its triangles, as pairs of the other two vertices.
   std::vector<std::map<std::uint32_t, std::uint32_t>> fans(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -183,7 +182,7 @@ TEST(CoarseMesh, HasTheVerticesOfItsLayers) {
   }
 }
 
-// A vertex that is removed leaves the triangles of its ring, with the ring as their outline.
+// Removing a vertex leaves the triangles of its ring, with the ring as their outline.
 TEST(CoarseMesh, FillsTheHolesOfALayer) {
   const Mesh mesh = grid(20, 15, true);
   const VertexLayers layers = make_layers(mesh.num_vertices, mesh.triangles);
@@ -260,7 +259,7 @@ TEST(CoarseMesh, TriangulationsAddABoundedNumberOfTriangles) {
   }
 }
 
-// FNV-1a over all coarse meshes.
+// Returns FNV-1a over all coarse meshes.
 std::uint32_t digest(const Mesh& mesh) {
   std::uint32_t hash = 2166136261U;
   const auto add = [&hash](std::span<const std::uint32_t> list) {

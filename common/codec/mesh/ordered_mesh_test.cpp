@@ -22,7 +22,7 @@ struct Mesh {
   VertexLayers layers;
 };
 
-// A disc of `rings` rings of 8 vertices around vertex 0.
+// Makes a disc of `rings` rings of 8 vertices around vertex 0.
 Mesh disc(std::uint32_t rings) {
   std::vector<Triangle> triangles;
   for (std::uint32_t i = 0; i < 8; ++i) {
@@ -89,7 +89,7 @@ TEST(OrderedMesh, FollowsTheLayersIfPresent) {
   EXPECT_TRUE(outer);
 }
 
-// 8.10.1: any division into groups gives all vertices in order.
+// 8.10.1: any division into groups yields all vertices in order.
 TEST(OrderedMesh, LayerGroupsPartitionTheOrder) {
   const Mesh m = disc(6);
   const OrderedMesh mesh(Prediction::kLayers, m.topology, m.layers);

@@ -15,7 +15,7 @@ namespace {
 
 using Triangles = std::vector<Triangle>;
 
-// A sheet with holes, a few triangles turned over, and stray ones, degenerate ones among them.
+// Makes a sheet with holes, flipped triangles, and stray and degenerate triangles.
 Triangles random_mesh(unsigned seed, std::uint32_t num_vertices) {
   std::mt19937 engine(seed);
   const auto random = [&engine] { return static_cast<std::uint32_t>(engine()); };
@@ -33,7 +33,8 @@ Triangles random_mesh(unsigned seed, std::uint32_t num_vertices) {
   return triangles;
 }
 
-// The hinges of 8.18.1, by a search of all pairs of triangles: [low, high, p, q], in order.
+// Finds the hinges of 8.18.1 by a search of all pairs of triangles: [low, high, p, q], in
+// order.
 std::vector<std::array<std::uint32_t, 4>> hinges_of_text(const Triangles& triangles) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> corners;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  // in the order of appearance
@@ -64,8 +65,8 @@ bool has_triangle(const Triangles& triangles, std::uint32_t a, std::uint32_t b,
   });
 }
 
-// 8.18.2: the vertex with the most hinges; of several, the one that has had as many for
-// longest.
+// 8.18.2: takes the vertex with the most hinges or, of several, the one that has had as many
+// for longest.
 std::vector<std::uint32_t> order_of_text(const Triangles& triangles,
                                          std::uint32_t num_vertices) {
   const auto hinges = hinges_of_text(triangles);

@@ -20,7 +20,7 @@ using Rest = std::vector<Vec3i>;
 using Weights = std::vector<std::int32_t>;
 using Real3 = std::array<double, 3>;
 
-// A mesh of one vertex preceded by the vertices of its ring and outer ring.
+// Mesh of one vertex preceded by the vertices of its ring and outer ring.
 struct Patch {
   std::size_t ring_size = 0;
   Rest rest;  // ring, outer ring, then the vertex
@@ -57,7 +57,7 @@ Weights weights_of(const Patch& patch) {
   return {found.begin(), found.end()};
 }
 
-// Solves m x = b by elimination with pivoting; false if it is close to singular.
+// Solves m x = b by elimination with pivoting. Returns false if it is nearly singular.
 bool solve(std::array<std::array<double, 4>, 3> m, Real3& x) {
   for (std::size_t i = 0; i < 3; ++i) {
     std::size_t pivot = i;

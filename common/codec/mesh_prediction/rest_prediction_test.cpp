@@ -87,7 +87,7 @@ TEST(RestPrediction, AxesOfFlatHingesAreThoseOfTheWorld) {
   EXPECT_EQ(RestPrediction(shape.order, flat[0], 20).axes({}), RestPrediction::world());
 }
 
-// A shape, and below it a copy: moved, turned by a quarter, and mirrored if asked for.
+// A shape, and below it a copy: moved, turned by a quarter, and optionally mirrored.
 TEST(RestPrediction, ACounterpartIsTurnedAndMirrored) {
   const std::vector<Triangle> triangles{{0, 1, 2}, {1, 0, 3}, {4, 5, 6}, {5, 4, 7}};
   const Topology topology = make_topology(8, triangles);

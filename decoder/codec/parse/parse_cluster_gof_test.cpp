@@ -137,7 +137,7 @@ TEST(ParseGof, FactorsStayWithinTheMemoryOfTheCaller) {
   }
 }
 
-// A payload bin by bin. Without triangles, every cluster_predicted_flag has context 0.
+// Writes a payload bin by bin. Without triangles, every cluster_predicted_flag has context 0.
 class Recipe : public SectionRecipe {
  public:
   std::uint32_t first_frame = 0;
@@ -181,7 +181,7 @@ Result<ClusterGof> parse(const Bytes& payload, const SequenceHeader& header,
                         {kAmple, 0});
 }
 
-// One world cluster without components.
+// Returns one world cluster without components.
 Bytes plain(Recipe recipe) {
   for (std::uint32_t i = 0; i <= recipe.num_clusters_minus1; ++i) recipe.lcf_flag(false);
   if (recipe.num_clusters_minus1 > 0) {
@@ -332,8 +332,8 @@ TEST(ParseGof, ComponentsOfAClusterAreBoundedByTheLevel) {
   }
 }
 
-// Factors of 16384 vertices and 256 frames; 170 components have more than 2^23. The bytes of
-// fewer components are missing, which is noticed after the first of them.
+// Factors of 16384 vertices and 256 frames; 170 components have more than 2^23. With fewer
+// components, missing bytes are detected after the first.
 TEST(ParseGof, FactorsAreBoundedByTheLevel) {
   for (const std::int32_t count : {169, 170}) {
     Recipe recipe;
@@ -350,7 +350,7 @@ TEST(ParseGof, FactorsAreBoundedByTheLevel) {
   }
 }
 
-// Two components; the deltas of the second one are given.
+// Parses two components; the arguments are the deltas of the second.
 Result<ClusterGof> parse_deltas(std::int32_t scale_idx, std::int32_t spatial_bits,
                                 std::int32_t temporal_bits) {
   Recipe recipe;

@@ -1,4 +1,4 @@
-// 6.12.4 rest_residuals( v ), parsing side.
+// Tests 6.12.4 rest_residuals( v ), parsing side.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 namespace rlpc {
 namespace {
 
-// Closed in both directions, so that vertices have one to four hinges.
+// Makes a grid closed in both directions, so that vertices have one to four hinges.
 std::vector<Triangle> torus(std::uint32_t width, std::uint32_t height) {
   std::vector<Triangle> triangles;
   const auto at = [&](std::uint32_t x, std::uint32_t y) {
@@ -42,7 +42,7 @@ class RestSlice {
  public:
   RestSlice() : topology_(make_topology(kVertices, kTorus)), order_(topology_, kTorus) {}
 
-  // How many hinges are listed before that vertex.
+  // Returns the number of hinges that are listed before that vertex.
   std::uint32_t num_listed(std::size_t num_hinges) const {
     std::size_t count = 0;
     for (const std::uint32_t v : order_.order()) {
@@ -134,7 +134,7 @@ TEST(ParseRestResiduals, NewCounterpartsAreKept) {
   EXPECT_EQ(count, 1);
 }
 
-// Three hinges take two bits; the list has not as many entries as its bits could name.
+// Three hinges take two bits; the list has fewer entries than its bits can index.
 TEST(ParseRestResiduals, HingesOfACounterpartExist) {
   RestSlice slice;
   const std::uint32_t listed = slice.num_listed(3);

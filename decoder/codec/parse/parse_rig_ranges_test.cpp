@@ -1,5 +1,5 @@
-// The elements of 6.13 up to the ends of their ranges, and beyond; and NumFactors with skinned
-// rigs.
+// Tests the elements of 6.13 up to the ends of their ranges, and beyond; and NumFactors with
+// shared rigs.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -45,7 +45,7 @@ class Units {
     BitReader r(payload);
     return parser_.slice(r, kUnitBitPos);
   }
-  // Residuals of all vertices.
+  // Adds residuals of all vertices.
   void add_residuals(SliceRecipe& slice, std::size_t num_factors) const {
     const OrderedMesh& mesh = meshes_[Prediction::kNone];
     slice.vertex_residuals(mesh, mesh.order(), num_factors);
@@ -55,7 +55,7 @@ class Units {
     add_residuals(slice, kRestFactors);
     return this->slice(slice);
   }
-  // Of component group 1 of a shared rig.
+  // Parses component group 1 of a shared rig.
   Result<bool> group(const std::vector<std::int32_t>& spatial_bits_deltas) {
     SliceRecipe slice(1, 0);
     slice.num_group_components_minus1(static_cast<std::int32_t>(spatial_bits_deltas.size()) -
@@ -76,7 +76,7 @@ class Units {
   SkinnedGofParser parser_;
 };
 
-// Counts as this many factors, in steps of the number of vertices.
+// Returns a rig with a number of factors, in steps of the number of vertices.
 std::shared_ptr<SharedRig> rig_of(std::uint32_t num_vertices, std::size_t factors) {
   auto rig = std::make_shared<SharedRig>();
   rig->influences.resize(num_vertices);
@@ -86,7 +86,7 @@ std::shared_ptr<SharedRig> rig_of(std::uint32_t num_vertices, std::size_t factor
 
 Bytes gof_of_bones() {
   SkinnedGofRecipe recipe;
-  recipe.num_adaptive_factors = 0;  // of the High profile
+  recipe.num_adaptive_factors = 0;  // High profile
   return recipe.payload();
 }
 
@@ -167,7 +167,7 @@ TEST(ParseRigRanges, SpatialBitsAreWithinTheirRange) {
   expect_invalid(parse(1, -2), "R-GOF-11", "spatial_bits_delta");
 }
 
-// A rig of one component group, of `count` trajectories, and a GOF that uses it.
+// Rig of one component group of `count` trajectories, and a GOF that uses it.
 class Tracks {
  public:
   explicit Tracks(std::size_t count, std::uint32_t local_groups = 0) : units_(2, 3) {
@@ -191,7 +191,8 @@ class Tracks {
 };
 
 TEST(ParseTracksRanges, HeadersAreWithinTheirRanges) {
-  // A first trajectory of 100 and 8; the deltas of the third are given, the second is still.
+  // The first trajectory has 100 and 8, the second is still, and the arguments are the deltas
+  // of the third.
   const auto parse = [](std::int32_t scale_idx, std::int32_t temporal_bits) {
     Tracks tracks(3);
     SliceRecipe slice(1, 0);
@@ -250,7 +251,7 @@ TEST(ParseTracksRanges, TrajectoriesOfBothAreBoundedByTheLevel) {
     for (int l = 0; l < 510; ++l) slice.trajectory_flag(false);
     EXPECT_TRUE(tracks.slice(slice));
     SliceRecipe own(2, 0);
-    // Not the first slice with such elements: the models go on.
+    // Not the first slice with such elements: the models continue.
     own.rigs = slice.rigs;
     own.num_group_components_minus1(local - 1);
     for (std::int32_t l = 0; l < local; ++l) own.trajectory(0, 0, 0, 0, 0, 3);
@@ -275,7 +276,7 @@ TEST(ParseRigRanges, FactorsOfAllRigsAreBoundedByTheLevel) {
     } else {
       expect_invalid(added, "R-LVL-05", "bone_section");
     }
-    EXPECT_TRUE(units.rig({}, 2));  // replaces one
+    EXPECT_TRUE(units.rig({}, 2));  // replaces a rig
     EXPECT_TRUE(units.gof(gof_of_bones()));
   }
 }
@@ -300,7 +301,7 @@ TEST(ParseRigRanges, FactorsOfGofsWithRigsAreBoundedByTheLevel) {
     SliceRecipe tracks(1, 0);
     tracks.trajectory_flag(false);
     ASSERT_TRUE(units.slice(tracks));
-    // A factor for each vertex is left, less 6 for the bone and 3 for each trajectory.
+    // One factor per vertex is left, minus 6 for the bone and 3 for each trajectory.
     SliceRecipe local(2, 0);
     local.rigs = tracks.rigs;
     local.num_group_components_minus1(0);
@@ -308,7 +309,7 @@ TEST(ParseRigRanges, FactorsOfGofsWithRigsAreBoundedByTheLevel) {
   }
 }
 
-// Tracks are counted, too: 3 for each frame.
+// Tracks count 3 factors per frame.
 TEST(ParseRigRanges, FactorsOfTracksAreBoundedByTheLevel) {
   constexpr std::uint32_t kVertices = 8000;
   for (const std::size_t left : {3U * 512, 3U * 512 - 1}) {
@@ -320,7 +321,7 @@ TEST(ParseRigRanges, FactorsOfTracksAreBoundedByTheLevel) {
     ASSERT_TRUE(units.rest());
     ASSERT_TRUE(units.group({0}));
     units.keep();
-    // What the other rig leaves: 4 factors of this one, the bone, and `left`.
+    // The other rig leaves 4 factors of this one, the bone, and `left`.
     const std::uint64_t others = (1U << 23) - 4 * kVertices - 6 * 512 - left;
     auto other = rig_of(1, 3);
     other->influences.resize(1);
@@ -338,8 +339,8 @@ TEST(ParseRigRanges, FactorsOfTracksAreBoundedByTheLevel) {
   }
 }
 
-// Of the unit itself, of what is made of it, and of other shared rigs; also of the one that
-// a shared rig replaces, which is kept meanwhile.
+// Counts the memory of the unit, of its reconstruction, and of other shared rigs, including the
+// one being replaced.
 TEST(ParseRigRanges, RigsStayWithinTheMemoryOfTheCaller) {
   const Memory kept = memory_of_rig(*rig_of(5, 4));
   const Memory own = memory_of_vertices(5, false) + memory_of_spatial(5, 3);
@@ -361,7 +362,7 @@ TEST(ParseRigRanges, RigsStayWithinTheMemoryOfTheCaller) {
   }
 }
 
-// Those of a skinned GOF; of a skinned GOF with a shared rig, without and with local component
+// Tests a skinned GOF, and skinned GOFs with a shared rig, without and with local component
 // groups.
 TEST(ParseRigRanges, GofsStayWithinTheMemoryOfTheCaller) {
   const auto rig = rig_of(5, 4);

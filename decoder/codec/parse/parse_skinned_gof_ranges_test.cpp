@@ -1,4 +1,4 @@
-// The elements of 6.11 and 6.12 up to the ends of their ranges, and beyond.
+// Tests the elements of 6.11 and 6.12 up to the ends of their ranges, and beyond.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -30,7 +30,7 @@ struct Gof {
   }
 };
 
-// Three layers in one group.
+// Returns a recipe with three layers in one group.
 SkinnedGofRecipe layered() {
   SkinnedGofRecipe recipe;
   recipe.prediction_idc = 3;
@@ -194,7 +194,7 @@ TEST(ParseSkinnedGofRanges, BonesTakeAllPivotsFlagsAndOrders) {
   }
 }
 
-// Only the High profile has them, and only with levels do tracks say which order they have.
+// Only the High profile has levels, and only with levels do tracks code their order.
 TEST(ParseSkinnedGofRanges, TracksTakeAllOrders) {
   for (std::uint32_t levels = 0; levels <= 7; ++levels) {
     for (std::uint32_t between = 0; between <= 2; ++between) {
@@ -234,7 +234,7 @@ TEST(ParseSkinnedGofRanges, TemporalLayersAreAtMostOneMoreThanLevels) {
   }
 }
 
-// Slices of a mesh without triangles. Vertices of one layer; bones beyond the first are extra.
+// Slices of a mesh without triangles, with one layer. Bones after the first are extra bones.
 class Slices {
  public:
   explicit Slices(std::uint32_t num_vertices, std::size_t num_bones = 1,
@@ -256,7 +256,7 @@ class Slices {
     slice.vertex_residuals(mesh, mesh.order(), num_factors);
   }
   Result<bool> parse(SliceRecipe& slice) { return units_.slice(slice.payload()); }
-  // Component group 0, of a single bone.
+  // Parses component group 0, with a single bone.
   void parse_rest() {
     SliceRecipe rest(0, 0);
     add_residuals(rest, kRestFactors);
@@ -303,7 +303,7 @@ TEST(ParseSliceRanges, ComponentsAreAtLeastOneAndBoundedByTheLevel) {
 }
 
 // 6 * 256 + 3 * 16384 factors without trajectories, 16384 + 3 * 256 for each; 487 have more
-// than 2^23. The bytes of fewer are missing, which is noticed after the first of them.
+// than 2^23. With fewer, missing bytes are detected after the first.
 TEST(ParseSliceRanges, FactorsAreBoundedByTheLevel) {
   for (const std::int32_t count : {486, 487}) {
     Slices slices(16384, 1, 0, 256);
@@ -321,7 +321,7 @@ TEST(ParseSliceRanges, FactorsAreBoundedByTheLevel) {
 }
 
 TEST(ParseSliceRanges, ComponentHeadersAreWithinTheirRanges) {
-  // A first trajectory of 100, 5 and 8; the deltas of the second one are given.
+  // The first trajectory has 100, 5 and 8; the arguments are the deltas of the second.
   const auto parse = [](std::int32_t scale_idx, std::int32_t spatial_bits,
                         std::int32_t temporal_bits) {
     Slices slices(1);
@@ -363,7 +363,7 @@ TEST(ParseSliceRanges, TrajectoriesTakeAllPredictorsAndWeights) {
   }
 }
 
-// One vertex, three bones: bone 0 is its candidate. Weights are less 1, of 4 together.
+// Parses one vertex and three bones; bone 0 is its candidate. Weights minus 1, with a sum of 4.
 Result<bool> parse_extra_bones(
     const std::vector<std::pair<std::uint32_t, std::uint32_t>>& bones, bool flag_follows) {
   Slices slices(1, 3, 2);

@@ -151,7 +151,7 @@ TEST(ParseSkinnedGof, FillsTheStructure) {
   EXPECT_EQ(gof.trajectories[2].temporal_weight, (std::array<std::int16_t, 3>{44, 0, 0}));
 }
 
-// By place in the mesh: the layers are {2, 3, 6, 1, 8} and {0, 4, 5, 7}.
+// The layers are {2, 3, 6, 1, 8} and {0, 4, 5, 7}.
 TEST(ParseSkinnedGof, PutsVerticesWhereTheyBelong) {
   SkinnedGofUnits units = legal_units();
   ASSERT_TRUE(units.gof(kGof));
@@ -161,7 +161,7 @@ TEST(ParseSkinnedGof, PutsVerticesWhereTheyBelong) {
   EXPECT_EQ(gof.vertex_residual[0],
             (std::vector<std::int32_t>{-2, 1,  -1, 5, 3,  4,  -4, -3, -5, -2, -3, 6, -2, -3,
                                        2,  -1, 0,  1, -6, -6, 1,  6,  -2, -1, 1,  0, 0}));
-  // The first vertex has two extra bones, and what is left goes to bone 0.
+  // The first vertex has two extra bones, and the remaining weight goes to bone 0.
   ASSERT_EQ(gof.influences[2].size, 3);
   EXPECT_EQ(gof.influences[2].list[0], (Influence{1, 7}));
   EXPECT_EQ(gof.influences[2].list[1], (Influence{2, 4}));
@@ -189,8 +189,8 @@ TEST(ParseSkinnedGof, TellsWhichSliceItWas) {
   }
 }
 
-// 8.14.1: each group after those before it, layer groups from the coarsest on, and none of a
-// group that the group before does not have.
+// 8.14.1: groups are in order, layer groups begin with the coarsest, and a group has no layer
+// group that the previous group lacks.
 TEST(ParseSkinnedGof, SlicesFollowEachOther) {
   const std::vector<Bytes> slices{kThird, kRest, kRestFiner, kGroup, kGroupFiner};
   struct Order {
@@ -222,7 +222,7 @@ TEST(ParseSkinnedGof, SlicesFollowEachOther) {
   }
 }
 
-// A unit after those before it, whose bytes are right.
+// Parses a unit after the preceding units, whose bytes are valid.
 Result<bool> parse_unit(std::size_t unit, const Bytes& payload) {
   SkinnedGofUnits units = legal_units();
   if (unit == 0) return units.gof(payload);
@@ -235,8 +235,8 @@ const Bytes& unit_payload(std::size_t unit) { return unit == 0 ? kGof : kSlices[
 constexpr std::size_t kUnits = 6;
 constexpr std::size_t kSectionStart[kUnits] = {8, 1, 1, 1, 1, 1};
 
-// From an exact-size copy. A section that is cut off could be one of smaller residuals; here
-// none is.
+// Parses exact-size copies. A section that is cut off could be a section of smaller residuals;
+// here none is.
 TEST(ParseSkinnedGof, EveryProperPrefixFails) {
   for (std::size_t unit = 0; unit < kUnits; ++unit) {
     const Bytes& whole = unit_payload(unit);
@@ -281,7 +281,7 @@ TEST(ParseSkinnedGof, AlignmentIsZero) {
   }
 }
 
-// The vertices with their rest positions and the bones, then a trajectory and another two; the
+// Adds the vertices with rest positions and bones, then one trajectory and two more; the
 // section that is read comes on top.
 TEST(ParseSkinnedGof, FactorsStayWithinTheMemoryOfTheCaller) {
   constexpr std::uint64_t kBones =

@@ -162,7 +162,7 @@ TEST(UnitReader, TheCrcCoversEveryBitOfTheUnit) {
 
 TEST(UnitReader, PayloadStartGivesAtMostThePayload) {
   Bytes wrong = joined({kHeader, kUnit});
-  wrong.back() ^= 1;  // the CRC is not looked at
+  wrong.back() ^= 1;  // the CRC is not checked
   UnitReader reader = reader_of(wrong);
   const auto unit = reader.header_at(10);
   ASSERT_TRUE(unit);
@@ -208,7 +208,7 @@ TEST(UnitReader, SkipsUnitsWithAValidCrc) {
     Bytes payload(size);
     for (std::size_t i = 0; i < size; ++i) payload[i] = static_cast<std::uint8_t>(i * i);
     const Bytes unit_bytes = write_unit(UnitType::kMetadata, payload);
-    // In the CRC, and in the payload if there is one.
+    // Damages the CRC, and the payload if any.
     for (std::size_t damaged = 0; 3 * damaged <= 4 + size && damaged < 3; ++damaged) {
       Bytes stream = joined({kHeader, unit_bytes, kUnit});
       if (damaged > 0) stream[stream.size() - kUnit.size() - damaged * 3] ^= 1;
@@ -254,7 +254,7 @@ TEST(UnitReader, TracesTheCrcAfterThePayload) {
             "120 index_distance 7\n152 unit_crc 3346686594\n");
 }
 
-// A source that fails, like a file on a disconnected disk.
+// Source that fails, like a file on a disconnected disk.
 class FailingSource : public ByteSource {
  public:
   std::uint64_t size() const override { return 1000; }

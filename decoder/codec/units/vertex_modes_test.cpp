@@ -1,4 +1,5 @@
-// Vertices by the mode of their patch, in frames with and without residuals.
+// Tests the counts of vertices by the mode of their patch, in frames with and without
+// residuals.
 #include "decoder/codec/units/vertex_modes.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,7 @@
 namespace rlpc {
 namespace {
 
-// Two, three and one vertices in three patches.
+// Makes a GOF with two, three and one vertices in three patches.
 InterGof gof_of(std::vector<InterFrame> frames) {
   InterGof gof;
   gof.num_patches = 3;

@@ -43,7 +43,7 @@ TEST(GlbBuffers, PacksValuesOfAnimationsIntoOneView) {
   buffers.add_values(std::vector<float>{1, 2, 3}, "VEC3");
   ASSERT_EQ(buffers.views().size(), 1U);
   EXPECT_EQ(buffers.accessors()[1]["byteOffset"], 12);
-  EXPECT_EQ(last_accessor(buffers)["byteOffset"], 20);  // 6 bytes before, at a multiple of 4
+  EXPECT_EQ(last_accessor(buffers)["byteOffset"], 20);  // after 6 bytes, at a multiple of 4
   EXPECT_EQ(buffers.views()[0]["byteLength"], 32);
   EXPECT_EQ(buffers.chunk().size(), 32U);
 }

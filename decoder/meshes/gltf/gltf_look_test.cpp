@@ -9,7 +9,7 @@ namespace {
 
 const std::vector<Triangle> kTriangles{{0, 1, 2}, {0, 2, 3}};
 
-// Of the two triangles.
+// Returns the materials of the two triangles.
 std::vector<AttributeSet> materials(std::uint32_t first, std::uint32_t second) {
   std::vector<AttributeSet> sets(1);
   sets[0].header.name = "material";
@@ -42,7 +42,7 @@ TEST(GltfLook, HasTheMaterialsOfTheAsset) {
   EXPECT_EQ(written.root["materials"], GltfJson::parse(R"([{"name":"a"}])"));
   ASSERT_EQ(written.primitives.size(), 2U);
   EXPECT_EQ(written.primitives[0]["material"], 0);
-  EXPECT_FALSE(written.primitives[1].contains("material"));  // there is no other
+  EXPECT_FALSE(written.primitives[1].contains("material"));  // no other material exists
 }
 
 TEST(GltfLook, IsPlainWithoutAnAsset) {
@@ -63,7 +63,7 @@ TEST(GltfLook, HasTheDefaultMaterialOfGltfWhereTheAssetSaysSo) {
   EXPECT_EQ(written.primitives[0]["material"], 0);
 }
 
-// Of four vertices, each with the next values from 0 on.
+// Makes a set of four vertices, with consecutive values from 0 on.
 AttributeSet vertices(const char* name, std::uint32_t components,
                       ValueKind kind = ValueKind::kIntegers) {
   AttributeSet set;

@@ -56,7 +56,8 @@ class Arm {
   JointMotion motion(double tolerance) const {
     return joint_motion(skeleton_, {}, places_, std::vector<double>{20, 10}, spans_, tolerance);
   }
-  // The largest distance between points moved by the maps of a motion and by the places.
+  // Returns the largest distance between points moved by the maps of a motion and by the
+  // places.
   double largest_error(const JointMotion& motion) const {
     double largest = 0;
     for (std::size_t i = 0; i < spans_.size(); ++i) {

@@ -12,7 +12,7 @@
 namespace rlpc {
 namespace {
 
-// Of three numbers each, in degrees.
+// Returns the RMS angle between vectors of three numbers, in degrees.
 double rms_angle(std::span<const float> a, std::span<const float> b) {
   double squares = 0;
   for (std::size_t i = 0; i < a.size(); i += 3) {
@@ -24,7 +24,7 @@ double rms_angle(std::span<const float> a, std::span<const float> b) {
   return std::sqrt(3 * squares / static_cast<double>(a.size()));
 }
 
-// Normals of the rest shape as viewers turn them.
+// Turns normals of the rest shape as viewers do.
 std::vector<float> turned(const SkinInfluences& influences, const JointMaps& maps,
                           std::span<const std::uint32_t> vertex, std::span<const float> rest) {
   std::vector<float> normals;
@@ -89,7 +89,7 @@ struct Skinned {
   GltfLook look = surface.look();
   SkinInfluences influences = written_influences(b.skeleton, kShortWhole);
   std::vector<JointMaps> maps = b.maps();
-  std::vector<float> rest = best_rest(influences, maps, b.frames);  // as yet
+  std::vector<float> rest = best_rest(influences, maps, b.frames);  // rest shape before tests change frames
 
   SkinNormals normals(std::size_t max_targets, std::uint64_t max_bytes = 1U << 20) const {
     const NormalVertices vertices = normal_vertices(
@@ -97,7 +97,7 @@ struct Skinned {
     return skin_normals(look, influences, maps, rest, b.frames, vertices,
                         {max_targets, max_bytes});
   }
-  // RMS of the angle to those of a frame.
+  // Returns the RMS angle to the normals of a frame.
   double error(const SkinNormals& normals, std::size_t f) const {
     Eigen::VectorXf shown = Eigen::Map<const Eigen::VectorXf>(
         normals.rest.data(), static_cast<Eigen::Index>(normals.rest.size()));
@@ -178,7 +178,7 @@ struct Noisy {
   }
 };
 
-// A vertex that is called steady has, in each frame, the normal that the joint turns there.
+// A steady vertex has, in each frame, the normal that its joint turns there.
 TEST(NormalVertices, AreSteadyWhereNormalsTurnWithTheirJoint) {
   const Noisy noisy(0.02);
   std::vector<AttributeSet> sets(1);

@@ -113,7 +113,7 @@ TEST(PrincipalShapes, HaveBytesAsValues) {
   }
 }
 
-// Of a few to many motions, each smaller than the one before.
+// Tests a few to many motions, each smaller than the previous one.
 TEST(PrincipalShapes, EndWhereFurtherOnesAreNotWorthTheirBytes) {
   std::mt19937 random(20);
   std::normal_distribution<float> normal;

@@ -5,9 +5,9 @@
 namespace rlpc {
 namespace {
 
-constexpr Eigen::Index kFrames = 99;  // the last 90 at rest
+constexpr Eigen::Index kFrames = 99;  // the last 90 are at rest
 
-// One target of two vertices, with weights of its own.
+// Makes one target of two vertices with given weights.
 PrincipalShapes one_target(const Eigen::RowVectorXf& weights) {
   PrincipalShapes shapes;
   shapes.unit = 1.0F / 127;

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
 using Positions = std::vector<std::int32_t>;
 
-// Bytes that have to be loaded in blocks before they can be read.
+// Bytes that must be loaded in blocks before they can be read.
 struct Loaded {
   static constexpr std::uint64_t kBlock = 64;
 
@@ -60,7 +60,7 @@ class LoadedSource final : public ByteSource {
   Loaded& loaded_;
 };
 
-// Calls it again whenever bytes were missing.
+// Repeats a call whenever bytes were missing.
 template <class Call>
 bool completed(Loaded& loaded, const SeekingDecoder& decoder, const Call& call) {
   while (!call()) {

@@ -7,7 +7,7 @@
 namespace rlpc {
 namespace {
 
-// A value of each vertex, coded in the order of the sectors.
+// Mesh with one value per vertex, coded in the order of the sectors.
 class Mesh {
  public:
   Mesh(std::vector<Triangle> triangles, std::vector<std::int32_t> positions)
@@ -15,7 +15,7 @@ class Mesh {
         positions_(std::move(positions)),
         num_vertices_(static_cast<std::uint32_t>(positions_.size() / 3)) {}
 
-  // What is expected of each vertex, if all have these values.
+  // Returns the prediction of each vertex for given values.
   std::vector<AttributeValue> predictions(const AttributeHeader& header,
                                           const std::vector<AttributeValue>& values) const {
     std::vector<AttributeValue> predictions(num_vertices_);
@@ -63,7 +63,7 @@ TEST(AttributePredictor, MeanOrParallelogram) {
   EXPECT_EQ(predictions[2], (AttributeValue{150, 2}));
   EXPECT_EQ(predictions[3], (AttributeValue{160, 6}));
   predictions = square().predictions(integers(2, AttributePrediction::kParallelogram), values);
-  EXPECT_EQ(predictions[2], (AttributeValue{150, 2}));  // nothing is known across its edge
+  EXPECT_EQ(predictions[2], (AttributeValue{150, 2}));  // no known value across its edge
   EXPECT_EQ(predictions[3], (AttributeValue{120, 11}));
 }
 
@@ -75,11 +75,12 @@ TEST(AttributePredictor, PredictionsStayInRange) {
 
 TEST(AttributePredictor, TextureCoordinatesHaveTheShapeOfTheirTriangles) {
   const AttributeHeader header = integers(2, AttributePrediction::kPositions);
-  // Half as large, a quarter turned, moved.
+  // Half as large, turned by a quarter, moved.
   auto predictions = square().predictions(header, {{300, 40}, {300, 90}, {250, 90}, {}});
   EXPECT_EQ(predictions[2], (AttributeValue{250, 90}));
   EXPECT_EQ(predictions[3], (AttributeValue{250, 40}));
-  // Mirrored: the third vertex is expected on the wrong side, and tells the fourth its own.
+  // Mirrored: the third vertex is predicted on the wrong side; from its value, the fourth is
+  // predicted on the right one.
   predictions = square().predictions(header, {{300, 40}, {300, 90}, {350, 90}, {}});
   EXPECT_EQ(predictions[2], (AttributeValue{250, 90}));
   EXPECT_EQ(predictions[3], (AttributeValue{350, 40}));

@@ -57,7 +57,7 @@ TEST_F(SquareAndWall, LikelyDiagonalJoinsTheSquare) {
   Faces faces(geometry_, Diagonals::kLikely, mates_, none, none, true);
   EXPECT_EQ(faces.of_triangles(), (std::vector<std::uint32_t>{0, 0, 2}));
   EXPECT_EQ(faces.view().normals[0], (Vec3l{0, 0, 20000}));
-  // The flag says that the likely one is none.
+  // The flag excludes the likely diagonal.
   std::vector<bool> flags = none;
   flags[2] = flags[3] = true;
   Faces apart(geometry_, Diagonals::kLikely, mates_, none, flags, true);

@@ -29,15 +29,14 @@ TEST(FrameOrder, OfDyadicPeriods) {
   pattern.kind = FramePattern::kDyadic;
   pattern.period_log2 = 2;
   EXPECT_EQ(pattern.num_depths(), 3U);
-  EXPECT_EQ(places_of(pattern, 8),
-            (std::vector<FramePlace>{{0, 0, 0, 0},
-                                     {4, 0, 0, 0},
-                                     {2, 0, 4, 1},
-                                     {1, 0, 2, 2},
-                                     {3, 2, 4, 2},
-                                     {7, 4, 4, 0},  // what is left of a period
-                                     {5, 4, 7, 1},
-                                     {6, 5, 7, 2}}));
+  EXPECT_EQ(places_of(pattern, 8), (std::vector<FramePlace>{{0, 0, 0, 0},
+                                                            {4, 0, 0, 0},
+                                                            {2, 0, 4, 1},
+                                                            {1, 0, 2, 2},
+                                                            {3, 2, 4, 2},
+                                                            {7, 4, 4, 0},  // rest of a period
+                                                            {5, 4, 7, 1},
+                                                            {6, 5, 7, 2}}));
 }
 
 TEST(FrameOrder, OfExplicitPeriods) {
@@ -48,7 +47,7 @@ TEST(FrameOrder, OfExplicitPeriods) {
                                                             {3, 0, 0, 0},
                                                             {1, 0, 3, 2},
                                                             {2, 1, 3, 2},
-                                                            {4, 3, 3, 0},  // what is left
+                                                            {4, 3, 3, 0},  // rest of a period
                                                             {5, 4, 4, 0}}));
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
 
-// Random rings, not those of a mesh.
+// Random rings, not from a mesh.
 struct Rings {
   explicit Rings(std::uint32_t n) : topology(make_topology(n, {})) {
     layers.layer_of_vertex.assign(n, 0);

@@ -73,7 +73,7 @@ TEST(ParseAttributes, GivesSeamsDiagonalsAndResiduals) {
             (std::vector<std::uint32_t>{2147483571U, 1U, 0U, 4294442909U}));
 }
 
-// As the specification's pseudo-code traces them.
+// The trace is that of the specification's pseudo-code.
 TEST(ParseAttributes, ElementsAreTracedAsInTheSpecification) {
   ElementNames names;
   BitReader r(kFourSets, 0, &names);
@@ -108,7 +108,7 @@ TEST(ParseAttributes, EveryProperPrefixFails) {
     const auto coded =
         parse(Bytes(kFourSets.begin(), kFourSets.begin() + static_cast<std::ptrdiff_t>(n)));
     ASSERT_FALSE(coded) << n;
-    // Past the end of the section there are zeros, which can break another rule first (4.6).
+    // Past the end of the section, zeros are read, which can break another rule first (4.6).
     const std::string rule = coded.error().rule;
     EXPECT_TRUE(rule == "R-BIT-01" || rule == "R-RNG-01" || rule == "R-ATT-07") << n << rule;
   }
@@ -122,7 +122,7 @@ TEST(ParseAttributes, NothingFollowsTheSection) {
   EXPECT_EQ(coded.error().rule, std::string("R-RNG-01"));
 }
 
-// The header of one set, as far as the element that is out of range.
+// Header of one set, up to the element that is out of range.
 struct Header {
   std::uint32_t sets_minus1 = 0;
   std::uint32_t domain = 0;
@@ -196,7 +196,7 @@ TEST(ParseAttributes, MemoryIsCheckedBeforeItIsTaken) {
   EXPECT_EQ(in_use.error().code, Errc::kLimitExceeded);
 }
 
-// A payload of some hundred bytes that announces 64 sets of a mesh of a million triangles.
+// A payload of some hundred bytes that declares 64 sets of a mesh of a million triangles.
 TEST(ParseAttributes, SmallUnitsDoNotAskForMuchMemory) {
   constexpr std::uint32_t kVertices = 500000;
   std::vector<Triangle> triangles(1000000, Triangle{0, 1, 2});

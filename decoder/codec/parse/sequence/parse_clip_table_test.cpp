@@ -13,7 +13,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// Clips "ab" of frames 2 to 4, and "c" of frame 0.
+// Writes clips "ab" of frames 2 to 4, and "c" of frame 0.
 Bytes table() {
   BitWriter w;
   w.ue(1);

@@ -26,7 +26,7 @@ Result<Triangles> parse(const std::vector<std::uint8_t>& payload, std::uint32_t 
   return parse_connectivity(r, num_vertices, num_triangles);
 }
 
-// A payload bin by bin; the border only serves to find the contexts of the first gate.
+// Writes a payload bin by bin; the border only serves to find the contexts of the first gate.
 class Recipe {
  public:
   explicit Recipe(std::uint32_t num_degenerate, bool vertex_reuse = false) {
@@ -127,7 +127,7 @@ TEST(ParseConnectivity, ReusedVertexHasOccurredBefore) {
   }
 }
 
-// The nodes of the first triangle are 0, 1 and 2; node 0 is the gate and node 1 the one after.
+// The nodes of the first triangle are 0, 1 and 2; node 0 is the gate and node 1 the next node.
 TEST(ParseConnectivity, JoinTargetIsAnotherLiveNode) {
   for (const std::uint32_t node : {0U, 1U, 2U, 3U}) {
     Recipe recipe(0);
@@ -162,7 +162,7 @@ TEST(ParseConnectivity, DegenerateVertexExists) {
   }
 }
 
-// Claims of millions of triangles end with the bytes: the bins cannot all be free.
+// Declaring millions of triangles fails with the last byte: the bins cannot all be free.
 TEST(ParseConnectivity, ShortPayloadWithManyClaimedTrianglesFails) {
   for (const int fill : {0x00, 0x55, 0xFE}) {
     std::vector<std::uint8_t> payload(20, static_cast<std::uint8_t>(fill));

@@ -77,12 +77,12 @@ TEST(ParseGofIndex, OffsetsBeyond32BitsAddUp) {
 
 TEST(ParseGofIndex, FramesOfTheGofsAreThoseOfTheSequence) {
   EXPECT_TRUE(parse(payload_of(1, {{2, 9}, {3, 9}}), 7));
-  // One frame less than there are, and one more.
+  // One frame fewer than the sequence has, and one more.
   expect_invalid(parse(payload_of(1, {{2, 9}, {2, 9}}), 7), "R-IDX-01",
                  "num_index_gofs_minus1");
   expect_invalid(parse(payload_of(1, {{2, 9}, {4, 9}}), 7), "R-IDX-01",
                  "index_gof_frames_minus1");
-  // All frames are there before the last GOF.
+  // The GOFs before the last one already have all frames.
   expect_invalid(parse(payload_of(2, {{2, 9}, {3, 9}, {0, 9}}), 7), "R-IDX-01",
                  "num_index_gofs_minus1");
   expect_invalid(parse(payload_of(0, {{7, 9}}), 7), "R-IDX-01", "index_gof_frames_minus1");
@@ -92,7 +92,7 @@ TEST(ParseGofIndex, HasAtMostOneGofPerFrame) {
   EXPECT_TRUE(parse(payload_of(1, {{0, 9}, {0, 9}}), 2));
   expect_invalid(parse(payload_of(2, {{0, 9}, {0, 9}, {0, 9}}), 2), "R-IDX-01",
                  "num_index_gofs_minus1");
-  // A claim of many GOFs is refused before any of them is read.
+  // Declaring too many GOFs fails before any of them is read.
   expect_invalid(parse(payload_of(0xFFFFFFFE, {}), 1 << 24), "R-IDX-01",
                  "num_index_gofs_minus1");
 }

@@ -57,7 +57,7 @@ TEST(ParseMetadata, EveryProperPrefixFails) {
   }
 }
 
-// All but the last bits of the deflated blocks, which fill a byte and mean nothing.
+// Flips all bits except the last ones of the deflated blocks, which are padding.
 TEST(ParseMetadata, EveryFlippedBitFails) {
   constexpr std::size_t kLastBlockByte = 32;
   for (std::size_t bit = 0; bit < 8 * kLegal.size(); ++bit) {
@@ -86,7 +86,7 @@ TEST(ParseMetadata, TheSizeIsBounded) {
   Bytes large = kLegal;
   large[1] = 0x10;  // 2^20 and more
   expect_error(large, Errc::kInvalid, "R-MET-01", "metadata_size");
-  large[3] = 0x00;  // 2^20, which this text does not have
+  large[3] = 0x00;  // 2^20, more than the size of this text
   expect_error(large, Errc::kInvalid, "R-MET-02", "metadata_json");
   large[0] = 0xFF;
   const auto json = parse(large);

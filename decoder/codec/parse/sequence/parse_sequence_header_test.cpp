@@ -25,7 +25,7 @@ Result<SequenceHeader> parse(const Bytes& payload, std::uint64_t first_bit = 0) 
   return parse_sequence_header(r, 0);
 }
 
-// The elements as they stand in the syntax.
+// Elements in the order of the syntax.
 struct Elements {
   std::uint32_t profile_idc = 0;
   std::uint32_t level_idc = 1;

@@ -16,7 +16,7 @@ namespace {
 using Positions = std::vector<std::int32_t>;
 
 constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
-constexpr int kUnitScale = 32;  // the scale_idx of scale 1
+constexpr int kUnitScale = 32;  // scale_idx of scale 1
 
 SequenceHeader header_of(std::uint32_t num_vertices, int position_bits = 20) {
   SequenceHeader header;
@@ -111,7 +111,7 @@ TEST(ClusterRecon, TemporalValuesArePredictedAndClippedTo24Bits) {
   EXPECT_EQ(values[3], -most - 1);
 }
 
-// Two triangles that form a square.
+// Square of two triangles.
 struct Square {
   Topology topology = make_topology(4, std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}});
   std::vector<std::uint32_t> vertices{0, 1, 2, 3};
@@ -128,7 +128,7 @@ struct Square {
         component, SpatialPrediction(topology, vertices, cluster_of_vertex, local_index));
     EXPECT_EQ(
         std::vector<std::int32_t>(all.begin() + static_cast<long>(vertices.size()), all.end()),
-        std::vector<std::int32_t>(2 * vertices.size(), 0));  // y and z: apart from x
+        std::vector<std::int32_t>(2 * vertices.size(), 0));  // y and z: independent of x
     all.resize(vertices.size());
     return all;
   }

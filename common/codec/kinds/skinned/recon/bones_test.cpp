@@ -299,7 +299,7 @@ class RealBone {
     const double n = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     return {q[0] / n, q[1] / n, q[2] / n, q[3] / n};
   }
-  // The polynomial through the last values; its degree is the order minus 1.
+  // Extrapolates the polynomial through the last values; its degree is the order minus 1.
   template <class T>
   static T extrapolated(const std::vector<T>& series, int order) {
     T next{};
@@ -403,13 +403,13 @@ TEST(Bones, StayOrFollowTheirParentWithoutFlags) {
   for (std::uint32_t f = 0; f < kFrames; ++f) {
     const BonePose& pose = motions[1].poses[f];
     EXPECT_EQ(pose.origin, moved_point(motions[0].poses[f], motions[0].pivot, {5, -6, 7}));
-    // The rotation of the parent, normalised again.
+    // The rotation of the parent, normalised once more.
     EXPECT_EQ(pose.rotation, rotation_after(motions[0].poses[f].rotation, kNoRotation));
   }
 }
 
-// Where the residual of a frame is zero, the motion is as predicted from the frames that come
-// before it in the order of the track.
+// Where the residual of a frame is zero, the motion equals the prediction from the preceding
+// frames in the order of the track.
 TEST(Bones, ZeroResidualsReproduceThePredictions) {
   Random random(8);
   for (int i = 0; i < 150; ++i) {
@@ -435,7 +435,7 @@ TEST(Bones, ZeroResidualsReproduceThePredictions) {
 
 // Half a circle before and after, with either sign: the rotation between is a quarter turn.
 TEST(Bones, RotationsBetweenAreMeans) {
-  constexpr std::int64_t kRoot = 759'250'126;  // of a half, rounded up
+  constexpr std::int64_t kRoot = 759'250'126;  // square root of a half, rounded up
   const TrackPlace at{.frame = 1, .stride = 1, .level = 1, .neighbours = 2};
   for (const std::int64_t sign : {1, -1}) {
     const std::array<Quaternion, 3> known{kNoRotation, Quaternion{}, {0, sign * kOneI, 0, 0}};

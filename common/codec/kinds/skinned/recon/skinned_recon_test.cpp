@@ -17,7 +17,7 @@
 namespace rlpc {
 namespace {
 
-using Plane = std::vector<std::int64_t>;  // [vertex], values of one factor
+using Plane = std::vector<std::int64_t>;  // [vertex] values of one factor
 
 // 8.10 and 8.14 literally, factor by factor, without optimisation.
 class TextRecon {
@@ -58,7 +58,7 @@ class TextRecon {
   }
 
  private:
-  // 8.18: against the text only where specdec decodes the same streams.
+  // 8.18: takes rest positions; specdec compares them with the text on the same streams.
   void take_rest() {
     const RestRecon recon(mesh_.rest_order(), gof_.rest, gof_.rest_step,
                           from_.header.position_bits);
@@ -189,10 +189,10 @@ class TextRecon {
   OrderedMesh mesh_;
   std::vector<BoneMotion> bones_;
   std::optional<GeometryWeights> weights_;
-  std::vector<FilterOfText> filters_;  // of each vertex
+  std::vector<FilterOfText> filters_;  // [vertex]
 };
 
-// Some of them lack slices of all kinds.
+// Includes GOFs that lack slices of all kinds.
 TEST(RandomSkinnedGofs, ReconstructAsSpecified) {
   std::array<int, 4> predictions{};
   int absent = 0;
@@ -251,7 +251,7 @@ TEST(SkinnedRecon, HandsOverItsBones) {
   }
 }
 
-// The vertices of a layer are shared between threads.
+// Threads share the vertices of a layer.
 TEST(SkinnedRecon, DoesNotDependOnThreads) {
   int shared = 0;
   for (unsigned seed = 1; seed <= 200; ++seed) {
@@ -311,7 +311,7 @@ TEST(ValuePredictions, UseTheLatestParallelogramOrTheMeanOfAll) {
   EXPECT_EQ(predicted(Prediction::kNone, false), 0);
 }
 
-// A mesh at rest with one bone that does not move.
+// Returns a mesh at rest with one bone that does not move.
 RandomSkinnedGof still(unsigned seed) {
   RandomSkinnedGof from(
       seed, {.max_vertices = 60, .max_bones = 1, .max_groups = 0, .rest_order = false});
@@ -361,7 +361,7 @@ TEST(SkinnedRecon, PredictsVerticesOfAbsentLayers) {
   EXPECT_GT(absent, 100);
 }
 
-// The prediction of what follows `values`.
+// Returns the prediction of the value after `values`.
 Vec3l predicted(const Trajectory& t, std::span<const Vec3i> values) {
   Vec3l prediction{};
   for (std::size_t c = 0; c < 3; ++c) {
@@ -402,8 +402,8 @@ TEST(Trajectories, FollowTheirWeights) {
   EXPECT_EQ(predicted(t, {}), (Vec3l{0, 0, 0}));
 }
 
-// Level 0 has every fourth frame, predicted with the stride 4; the frames between follow from
-// both sides, as far as there are any.
+// Level 0 has every fourth frame, predicted with stride 4; the frames between are predicted
+// from both sides, where frames exist.
 TEST(Trajectories, AreReconstructedLevelByLevel) {
   Trajectory t;
   t.temporal_predictor = 5;
