@@ -16,7 +16,7 @@ Result<Vector<std::int32_t>> Decoder::Impl::decode_first_frame() {
   const auto unit = stream_.find_gof();
   if (!unit) return unit.error();
   Vector<std::int32_t> positions(3 * std::size_t{stream_.header().num_vertices});
-  const auto live = is_live(**unit);
+  const auto live = gofs_.is_live(**unit);
   if (!live) return live.error();
   if (*live) {
     LiveGof gof(stream_, {});
@@ -27,16 +27,16 @@ Result<Vector<std::int32_t>> Decoder::Impl::decode_first_frame() {
   }
   auto access_unit = stream_.read(**unit);
   if (!access_unit) return access_unit.error();
-  make_recon(*access_unit, stream_.context(), rigs_)->frame(0, positions);
+  make_recon(*access_unit, stream_.context(), gofs_.rigs())->frame(0, positions);
   return positions;
 }
 
 Result<Vector<std::int32_t>> Decoder::Impl::first_frame() {
   const ThreadPool::Use use(threads_);
   const SliceCut cut = stream_.access_units().cut();
-  if (gof_ && gof_->has_frame(0) && !cut.cuts()) {
+  if (const LoadedGof* gof = gofs_.gof(); gof != nullptr && gof->has_frame(0) && !cut.cuts()) {
     Vector<std::int32_t> positions(3 * std::size_t{stream_.header().num_vertices});
-    gof_->gof.recon->frame(0, positions);
+    gof->gof.recon->frame(0, positions);
     return positions;
   }
   const StreamReader::Place here = stream_.place();
@@ -58,17 +58,17 @@ Result<String> Decoder::Impl::asset() {
 
 Result<Vector<AttributeSet>> Decoder::Impl::attributes() {
   const auto& unit = stream_.attribute_unit();
-  if (!unit || coarse_) return Vector<AttributeSet>();
+  if (!unit || output_.coarse()) return Vector<AttributeSet>();
   const auto payload = stream_.units().payload(*unit);
   if (!payload) return payload.error();
   BitReader r = stream_.units().bits(*unit, *payload);
   // Triangles in decoded order.
   Vector<Triangle> triangles(stream_.triangles().begin(), stream_.triangles().end());
-  const auto order = stream_.vertex_order();
-  Vector<std::uint32_t> decoded(order.size());
-  for (std::uint32_t v = 0; v < order.size(); ++v) decoded[order[v]] = v;
-  for (Triangle& t : triangles) {
-    for (std::uint32_t& v : t) v = order.empty() ? v : decoded[v];
+  if (!stream_.vertex_order().empty()) {
+    const Vector<std::uint32_t> decoded = output_.decoded_indices();
+    for (Triangle& t : triangles) {
+      for (std::uint32_t& v : t) v = decoded[v];
+    }
   }
   const std::uint32_t num_vertices = stream_.header().num_vertices;
   const auto coded =
@@ -87,42 +87,35 @@ Result<Vector<AttributeSet>> Decoder::Impl::attributes() {
   for (AttributeSet& set : sets) {
     if (set.header.kind == ValueKind::kUnitVectors && set.header.has_faces()) {
       set.first_positions.resize(positions.size());
-      to_output_order(positions, set.first_positions);
+      output_.to_output<std::int32_t>(positions, set.first_positions, 3);
     }
-    if (set.header.domain != AttributeDomain::kVertex || order.empty()) continue;
+    if (set.header.domain != AttributeDomain::kVertex) continue;
     const Vector<std::uint32_t> values = set.values;
-    const std::size_t n = set.header.num_components;
-    for (std::size_t v = 0; v < order.size(); ++v) {
-      for (std::size_t c = 0; c < n; ++c) set.values[order[v] * n + c] = values[v * n + c];
-    }
+    output_.to_output<std::uint32_t>(values, set.values, set.header.num_components);
   }
   return sets;
 }
 
 std::optional<SkeletonPose> Decoder::Impl::pose() {
-  if (!gof_ || position_ == 0 || !has_frame(position_ - 1)) return std::nullopt;
-  const std::uint32_t first = gof_->header().first_frame;
-  if (gof_with_skeleton_ != first) {
-    std::optional<Skeleton> skeleton = gof_->gof.recon->skeleton();
+  const LoadedGof* const gof = gofs_.gof();
+  if (gof == nullptr || position_ == 0 || !gofs_.has_frame(position_ - 1)) return std::nullopt;
+  const std::uint32_t first = gof->header().first_frame;
+  if (last_skeleton_.first_frame != first) {
+    std::optional<Skeleton> skeleton = gof->gof.recon->skeleton();
     if (!skeleton) return std::nullopt;
-    // Maps decoded indices of vertices, passed as positions, to output order.
-    Vector<std::int32_t> decoded(3 * std::size_t{stream_.header().num_vertices});
-    for (std::size_t i = 0; i < decoded.size(); ++i) {
-      decoded[i] = static_cast<std::int32_t>(i / 3);
-    }
-    Vector<std::int32_t> in_output(3 * std::size_t{num_vertices()});
-    to_output_order(decoded, in_output);
     Vector<Vector<SkeletonInfluence>> influences;
-    for (std::size_t v = 0; v < num_vertices(); ++v) {
-      influences.push_back(skeleton->influences[static_cast<std::size_t>(in_output[3 * v])]);
+    for (const std::uint32_t v : output_.decoded_indices()) {
+      influences.push_back(std::move(skeleton->influences[v]));
     }
     skeleton->influences = std::move(influences);
-    if (!skeleton_ || *skeleton_ != *skeleton)
-      skeleton_ = make_shared_owned<const Skeleton>(std::move(*skeleton));
-    gof_with_skeleton_ = first;
+    auto& last = last_skeleton_.skeleton;
+    if (!last || *last != *skeleton) {
+      last = make_shared_owned<const Skeleton>(std::move(*skeleton));
+    }
+    last_skeleton_.first_frame = first;
   }
-  return SkeletonPose{skeleton_, gof_->gof.recon->places(position_ - 1 - first),
-                      gof_->gof.recon->values_of_frame()};
+  return SkeletonPose{last_skeleton_.skeleton, gof->gof.recon->places(position_ - 1 - first),
+                      gof->gof.recon->values_of_frame()};
 }
 
 }  // namespace rlpc

@@ -1,20 +1,15 @@
 // Decoder::Impl (decoder/rlpc_decoder.h): iterates over access units and their frames.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "common/memory/owned.h"
 #include "common/parallel/for_each.h"
-#include "decoder/codec/gofs/coarse_output.h"
-#include "decoder/codec/gofs/frame_band.h"
-#include "decoder/codec/gofs/gof_cache.h"
-#include "decoder/codec/gofs/live_gof.h"
-#include "decoder/codec/gofs/prefetch.h"
+#include "decoder/codec/gofs/gof_source.h"
+#include "decoder/codec/gofs/output_order.h"
 #include "decoder/codec/units/stream_reader.h"
 #include "decoder/rlpc_decoder.h"
 
@@ -24,7 +19,8 @@ class Decoder::Impl : public Owned {
  public:
   Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& options);
 
-  Result<bool> open();
+  // coarse_layers: as in DecoderOptions.
+  Result<bool> open(std::uint32_t coarse_layers);
   Result<bool> next_frame(std::span<std::int32_t> positions);
   Result<bool> seek(std::uint32_t frame);
   Result<bool> frame(std::uint32_t frame, std::span<std::int32_t> positions);
@@ -38,41 +34,25 @@ class Decoder::Impl : public Owned {
   std::optional<SkeletonPose> pose();
 
   const StreamReader& stream() const { return stream_; }
-  const std::optional<CoarseOutput>& coarse() const { return coarse_; }
-  std::uint32_t num_vertices() const {
-    return coarse_ ? static_cast<std::uint32_t>(coarse_->vertices().size())
-                   : stream_.header().num_vertices;
-  }
+  const OutputOrder& output() const { return output_; }
   std::uint32_t num_layers() const;
   std::optional<std::uint32_t> num_frames();
   DecoderMemory memory() const {
-    return {stream_.bytes_in_use(), gof_ ? gof_->gof.memory_bytes : 0, cache_.bytes()};
+    return {stream_.bytes_in_use(), gofs_.gof_bytes(), gofs_.cached_bytes()};
   }
   std::uint32_t position() const { return position_; }
-  bool was_cut() const { return was_cut_; }
+  bool was_cut() const { return was_cut_ || gofs_.was_cut(); }
   std::uint32_t compared_frames() const { return compared_frames_; }
 
  private:
-  bool has_frame(std::uint32_t frame) const {
-    if (live_) return live_->may_have(frame);
-    return gof_ && gof_->has_frame(frame);
-  }
+  // The skeleton returned last, and the first frame of its GOF.
+  struct LastSkeleton {
+    std::shared_ptr<const Skeleton> skeleton;
+    std::optional<std::uint32_t> first_frame;
+  };
+
   // Returns the direction of a frame from the last one decoded.
   Direction direction_of(std::uint32_t frame) const;
-  // Loads the next GOF of the stream. Returns false at the end of the sequence.
-  Result<bool> load_gof();
-  Result<bool> go_to_gof_of(std::uint32_t frame);
-  // Makes a GOF the current one.
-  void enter(std::unique_ptr<LoadedGof> gof);
-  // Caches the current GOF.
-  void leave_gof();
-  void count_cached_bytes();
-  Result<std::unique_ptr<LoadedGof>> find_gof(const UnitHeader& unit);
-  Result<std::unique_ptr<LoadedGof>> read_gof(const UnitHeader& unit);
-  std::unique_ptr<LoadedGof> loaded(std::uint64_t offset, std::uint64_t end, PreparedGof gof);
-  Result<bool> is_live(const UnitHeader& unit);
-  // Starts preparing the next GOFs in the direction of playback.
-  void look_ahead();
   // Decodes the first frame of the whole mesh, uncut, in decoded order; then restores the
   // state.
   Result<Vector<std::int32_t>> first_frame();
@@ -82,35 +62,17 @@ class Decoder::Impl : public Owned {
   Result<bool> decode_frame(std::span<std::int32_t> positions);
   // Sets the sticky error. Drops the loaded GOF, which may no longer match the position.
   void fail(const Error& error);
-  void to_output_order(std::span<const std::int32_t> decoded,
-                       std::span<std::int32_t> positions) const;
 
   StreamReader stream_;
-  RigRecons rigs_;
-  bool verify_hashes_;
-  std::uint32_t coarse_layers_;
-  std::optional<CoarseOutput> coarse_;
-  std::uint32_t num_threads_;
   ThreadPool threads_;
-  std::unique_ptr<LoadedGof> gof_;
-  std::unique_ptr<LiveGof> live_;  // instead of gof_
-  std::uint64_t max_cached_bytes_;
-  GofCache cache_;
-  FrameBand band_;
-  bool wants_prefetch_ = false;
-  std::uint64_t prefetch_bytes_ = 0;
-  bool forward_only_ = false;
-  std::optional<Prefetch> prefetch_;
+  GofSource gofs_;
+  OutputOrder output_;
   std::optional<Error> failure_;  // sticky until a successful seek
   std::uint32_t position_ = 0;
   std::optional<std::uint32_t> last_frame_;  // last frame decoded
-  Direction direction_ = Direction::kForward;
-  std::optional<Direction> looked_ahead_;  // direction of look_ahead() in the current GOF
-  bool is_random_ = false;                 // frames have been decoded out of order
-  bool was_cut_ = false;
   std::uint32_t compared_frames_ = 0;
-  std::shared_ptr<const Skeleton> skeleton_;        // last skeleton returned
-  std::optional<std::uint32_t> gof_with_skeleton_;  // first frame of its GOF
+  bool was_cut_ = false;  // apart from GOFs of gofs_
+  LastSkeleton last_skeleton_;
 };
 
 }  // namespace rlpc

@@ -10,42 +10,21 @@
 
 namespace rlpc {
 
-static_assert(kBandFrames == kFramesHeld);
-
 Decoder::Impl::Impl(std::unique_ptr<ByteSource> source, const DecoderOptions& options)
     : stream_(std::move(source), options),
-      rigs_(stream_.context()),
-      verify_hashes_(options.verify_hashes),
-      coarse_layers_(options.coarse_layers),
-      num_threads_(std::clamp(options.threads, 1U, kMaxThreads)),
-      threads_(num_threads_),
-      max_cached_bytes_(options.max_cached_bytes),
-      cache_(options.max_cached_bytes),
-      band_(num_threads_),
-      forward_only_(options.forward_only) {
-  stream_.rigs().when_dropped([this] { rigs_.erase_unused(); });
-  // A trace follows the order of the stream.
-  wants_prefetch_ = num_threads_ > 1 && options.trace == nullptr;
-  const std::uint32_t others = std::max(1U, num_threads_ - 1);
-  prefetch_bytes_ = options.limits.max_memory_bytes / (std::uint64_t{2} * others);
-}
+      threads_(std::clamp(options.threads, 1U, kMaxThreads)),
+      gofs_(stream_, threads_, std::clamp(options.threads, 1U, kMaxThreads), options),
+      output_(stream_) {}
 
-Result<bool> Decoder::Impl::open() {
+Result<bool> Decoder::Impl::open(std::uint32_t coarse_layers) {
   if (auto ok = stream_.open(); !ok) return ok;
-  // Prefetching would wait for GOFs that have not arrived.
-  if (wants_prefetch_ && !stream_.header().open_end_flag) {
-    prefetch_.emplace(stream_, rigs_, threads_, prefetch_bytes_, max_cached_bytes_ / 2,
-                      num_threads_ - 1);
-  }
-  if (coarse_layers_ != SliceCut::kAll) {
-    coarse_.emplace(stream_.header().num_vertices, stream_.triangles(), stream_.vertex_order(),
-                    coarse_layers_);
-  }
+  gofs_.open();
+  if (coarse_layers != SliceCut::kAll) output_.use_coarse_mesh(coarse_layers);
   return true;
 }
 
 std::uint32_t Decoder::Impl::num_layers() const {
-  if (coarse_) return coarse_->num_layers();
+  if (output_.coarse()) return output_.coarse()->num_layers();
   const auto& meshes = stream_.context().meshes;
   return meshes ? (*meshes)[Prediction::kLayers].num_layers() : 0;
 }
@@ -56,98 +35,131 @@ std::optional<std::uint32_t> Decoder::Impl::num_frames() {
   return num_frames;
 }
 
+Direction Decoder::Impl::direction_of(std::uint32_t frame) const {
+  const std::uint32_t next = last_frame_ ? *last_frame_ + 1 : 0;
+  if (frame == next) return Direction::kForward;
+  return frame + 2 == next ? Direction::kBack : Direction::kElsewhere;
+}
+
+void Decoder::Impl::fail(const Error& error) {
+  failure_ = error;
+  gofs_.drop();
+}
+
 Result<bool> Decoder::Impl::decode_live_frame(std::span<std::int32_t> positions) {
-  // After a seek into the GOF, decodes and drops the frames before it.
+  LiveGof& live = *gofs_.live();
+  // After a seek into the GOF, those before it only pass.
   do {
-    if (const auto more = live_->next(); !more || !*more) return more;
-  } while (live_->next_frame() <= position_);
-  was_cut_ = was_cut_ || live_->is_cut();
+    if (const auto more = live.next(); !more || !*more) return more;
+  } while (live.next_frame() <= position_);
+  was_cut_ = was_cut_ || live.is_cut();
   compared_frames_ = 0;
-  if (verify_hashes_ && !live_->is_cut() && live_->frame_crc()) {
-    if (crc32_of_positions(live_->positions()) != live_->frame_crc()->crc) {
-      return Error{Errc::kInvalid, "R-HSH-02", "frame_crc", live_->frame_crc()->bit_pos};
+  if (gofs_.verifies_hashes() && !live.is_cut() && live.frame_crc()) {
+    if (crc32_of_positions(live.positions()) != live.frame_crc()->crc) {
+      return Error{Errc::kInvalid, "R-HSH-02", "frame_crc", live.frame_crc()->bit_pos};
     }
     compared_frames_ = 1;
   }
-  to_output_order(live_->positions(), positions);
+  output_.to_output(live.positions(), positions, 3);
   ++position_;
   return true;
 }
 
-// 8.6.1 Output order, or 8.9.8 Coarse meshes
-void Decoder::Impl::to_output_order(std::span<const std::int32_t> decoded,
-                                    std::span<std::int32_t> positions) const {
-  const auto order = stream_.vertex_order();
-  if (coarse_) {
-    coarse_->pick(decoded, positions);
-    return;
-  }
-  if (order.empty()) {
-    std::copy(decoded.begin(), decoded.end(), positions.begin());
-    return;
-  }
-  for (std::size_t v = 0; v < order.size(); ++v) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      positions[3 * std::size_t{order[v]} + c] = decoded[3 * v + c];
-    }
-  }
-}
-
 Result<bool> Decoder::Impl::next_frame(std::span<std::int32_t> positions) {
-  assert(positions.size() == 3 * std::size_t{num_vertices()});
+  assert(positions.size() == 3 * std::size_t{output_.num_vertices()});
   if (failure_) return *failure_;
   const ThreadPool::Use use(threads_);
-  direction_ = direction_of(position_);
+  gofs_.turn(direction_of(position_));
   const auto more = decode_frame(positions);
   if (!more) fail(more.error());
   if (more && *more) {
     last_frame_ = position_ - 1;
-    look_ahead();
+    gofs_.look_ahead();
   }
   return more;
 }
 
 Result<bool> Decoder::Impl::frame(std::uint32_t frame, std::span<std::int32_t> positions) {
   if (failure_ || frame != position_) {
-    is_random_ = true;
+    gofs_.expect_any_order();
     if (auto ok = seek(frame); !ok) return ok;
   }
   return next_frame(positions);
 }
 
 Result<bool> Decoder::Impl::decode_frame(std::span<std::int32_t> positions) {
-  while (live_) {
+  while (gofs_.live() != nullptr) {
     const auto more = decode_live_frame(positions);
     if (!more || *more) return more;
-    live_.reset();
-    if (auto next = load_gof(); !next || !*next) return next;
+    gofs_.leave_live();
+    if (auto next = gofs_.load_next(); !next || !*next) return next;
   }
-  if (!has_frame(position_)) {
+  if (!gofs_.has_frame(position_)) {
     if (stream_.ended()) return false;
-    if (auto more = load_gof(); !more || !*more) return more;
-    if (live_) return decode_frame(positions);
+    if (auto more = gofs_.load_next(); !more || !*more) return more;
+    if (gofs_.live() != nullptr) return decode_frame(positions);
   }
-  const std::uint32_t f = position_ - gof_->header().first_frame;
-  const std::size_t frame_size = 3 * std::size_t{stream_.header().num_vertices};
-  band_.turn(direction_);
-  const auto decoded = band_.frame(*gof_->gof.recon, f, frame_size);
-  HashCheck& check = gof_->hash_check;
-  const bool agrees = check.add_frame(f, decoded);
-  compared_frames_ = check.compared_frames();
+  LoadedGof& gof = *gofs_.gof();
+  const std::uint32_t f = position_ - gof.header().first_frame;
+  const auto decoded = gofs_.frame(f);
+  const bool agrees = gof.hash_check.add_frame(f, decoded);
+  compared_frames_ = gof.hash_check.compared_frames();
   if (!agrees) {
-    const auto at = check.failed_at();
+    const auto at = gof.hash_check.failed_at();
     return Error{Errc::kInvalid, "R-HSH-02", at ? "frame_crc" : "position_crc",
-                 at.value_or(gof_->end * 8)};
+                 at.value_or(gof.end * 8)};
   }
-  to_output_order(decoded, positions);
+  output_.to_output(decoded, positions, 3);
   ++position_;
   return true;
 }
 
+Result<bool> Decoder::Impl::seek(std::uint32_t frame) {
+  assert(frame < num_frames().value_or(kMaxFrames));
+  const ThreadPool::Use use(threads_);
+  failure_.reset();
+  gofs_.turn(direction_of(frame));
+  if (!gofs_.has_frame(frame)) {
+    if (auto ok = gofs_.go_to(frame); !ok) {
+      fail(ok.error());
+      return ok;
+    }
+  }
+  LoadedGof* const gof = gofs_.gof();
+  if (gof != nullptr && frame == gof->header().first_frame) gof->hash_check.restart();
+  position_ = frame;
+  return true;
+}
+
+Result<bool> Decoder::Impl::prefetch(std::uint32_t frame) {
+  assert(frame < num_frames().value_or(kMaxFrames));
+  return gofs_.prefetch(frame);
+}
+
+Result<GofRange> Decoder::Impl::gof_of(std::uint32_t frame) {
+  assert(frame < num_frames().value_or(kMaxFrames));
+  if (const LoadedGof* const gof = gofs_.gof(); gof != nullptr && gof->has_frame(frame)) {
+    return GofRange{gof->header().first_frame, gof->header().num_frames};
+  }
+  const auto place = stream_.locate(frame);
+  if (!place) return place.error();
+  return GofRange{place->first_frame, place->num_frames};
+}
+
+Result<Vector<GofRange>> Decoder::Impl::gofs() {
+  Vector<GofRange> ranges;
+  const std::uint32_t end = num_frames().value_or(kMaxFrames);
+  for (std::uint32_t frame = 0; frame < end;) {
+    const auto gof = gof_of(frame);
+    if (!gof) return gof.error();
+    ranges.push_back(*gof);
+    frame = gof->first_frame + gof->num_frames;
+  }
+  return ranges;
+}
+
 Result<std::optional<std::uint32_t>> Decoder::Impl::skip_damage() {
-  gof_.reset();
-  live_.reset();
-  if (prefetch_) prefetch_->clear();
+  gofs_.drop();
   const auto frame = stream_.skip_damage();
   if (!frame) {
     fail(frame.error());
@@ -161,8 +173,7 @@ Result<std::optional<std::uint32_t>> Decoder::Impl::skip_damage() {
 
 Result<std::uint32_t> Decoder::Impl::parse_rest() {
   if (failure_) return *failure_;
-  gof_.reset();
-  live_.reset();
+  gofs_.drop_current();
   while (!stream_.ended()) {
     const auto access_unit = stream_.next();
     if (!access_unit) {
@@ -182,7 +193,7 @@ Result<Decoder> Decoder::open(std::unique_ptr<ByteSource> source,
   std::uint64_t& left = for_rest.limits.max_memory_bytes;
   left -= std::min(left, source->memory_bytes());
   auto impl = std::make_unique<Impl>(std::move(source), for_rest);
-  if (const auto ok = impl->open(); !ok) return ok.error();
+  if (const auto ok = impl->open(options.coarse_layers); !ok) return ok.error();
   return Decoder(std::move(impl));
 }
 
@@ -192,13 +203,12 @@ Decoder& Decoder::operator=(Decoder&&) noexcept = default;
 Decoder::~Decoder() = default;
 
 const SequenceHeader& Decoder::header() const { return impl_->stream().header(); }
-std::uint32_t Decoder::num_vertices() const { return impl_->num_vertices(); }
-std::span<const Triangle> Decoder::triangles() const {
-  return impl_->coarse() ? impl_->coarse()->triangles() : impl_->stream().triangles();
-}
+std::uint32_t Decoder::num_vertices() const { return impl_->output().num_vertices(); }
+std::span<const Triangle> Decoder::triangles() const { return impl_->output().triangles(); }
 std::span<const std::uint32_t> Decoder::coarse_vertices() const {
-  if (!impl_->coarse()) return {};
-  return impl_->coarse()->vertices();
+  const auto& coarse = impl_->output().coarse();
+  if (!coarse) return {};
+  return coarse->vertices();
 }
 std::uint32_t Decoder::num_layers() const { return impl_->num_layers(); }
 bool Decoder::has_vertex_order() const { return !impl_->stream().vertex_order().empty(); }

@@ -1,7 +1,5 @@
 #include "decoder/codec/gofs/coarse_output.h"
 
-#include <cassert>
-#include <cstddef>
 #include <utility>
 
 #include "common/codec/mesh/coarse_mesh.h"
@@ -18,16 +16,6 @@ CoarseOutput::CoarseOutput(std::uint32_t num_vertices, std::span<const Triangle>
   vertices_ = decoded_;
   if (vertex_order.empty()) return;
   for (std::uint32_t& v : vertices_) v = vertex_order[v];
-}
-
-void CoarseOutput::pick(std::span<const std::int32_t> decoded,
-                        std::span<std::int32_t> positions) const {
-  assert(positions.size() == 3 * decoded_.size());
-  for (std::size_t i = 0; i < decoded_.size(); ++i) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      positions[3 * i + c] = decoded[3 * std::size_t{decoded_[i]} + c];
-    }
-  }
 }
 
 }  // namespace rlpc

@@ -20,9 +20,8 @@ class CoarseOutput {
   // Returns output indices in the whole mesh, ascending.
   std::span<const std::uint32_t> vertices() const { return vertices_; }
   std::span<const Triangle> triangles() const { return triangles_; }
-  // Copies the positions of the coarse mesh. decoded: all vertices, in decoded order;
-  // positions: [vertices().size()][3]
-  void pick(std::span<const std::int32_t> decoded, std::span<std::int32_t> positions) const;
+  // Returns the decoded index of each of vertices().
+  std::span<const std::uint32_t> decoded() const { return decoded_; }
 
  private:
   std::uint32_t num_layers_ = 1;
