@@ -335,15 +335,15 @@ void CaseMaker::keep_to_source() {
 }  // namespace
 
 bool EncoderCase::has_known_options() const {
-  return options.profile <= RLPC_HIGH && options.preset <= RLPC_SLOW &&
+  return options.profile <= RLPC_PROFILE_HIGH && options.preset <= RLPC_PRESET_SLOW &&
          options.target >= RLPC_TARGET_KG && options.target <= RLPC_TARGET_LOSSLESS &&
-         options.hash_mode <= RLPC_HASH_FRAME;
+         options.hash_mode <= RLPC_HASH_MODE_FRAME;
 }
 
 bool EncoderCase::has_legal_target() const {
   const double value = options.target_value;
   if (options.target == RLPC_TARGET_LOSSLESS) {
-    return options.profile == RLPC_HIGH && options.components == 0 && value >= 2.0 &&
+    return options.profile == RLPC_PROFILE_HIGH && options.components == 0 && value >= 2.0 &&
            value <= 24.0 && value == std::floor(value);
   }
   return value > 0.0 && std::isfinite(value);
@@ -352,7 +352,7 @@ bool EncoderCase::has_legal_target() const {
 bool EncoderCase::is_legal() const {
   if (settings) return !check_settings(*settings);
   if (!has_known_options() || num_vertices == 0) return false;
-  if (num_frames == 0 && options.profile != RLPC_HIGH) return false;
+  if (num_frames == 0 && options.profile != RLPC_PROFILE_HIGH) return false;
   if (frame_rate.numerator == 0 || frame_rate.denominator == 0) return false;
   for (const std::uint32_t v : indices) {
     if (v >= num_vertices) return false;

@@ -83,15 +83,15 @@ static void check_set(rlpc_decoder* decoder, const drawing* d, uint32_t s) {
   CHECK(rlpc_decoder_find_attribute(decoder, set.name) == s);
   const size_t n = set.num_components;
   const size_t count = n * set.num_values;
-  CHECK((set.kind == RLPC_SMOOTHING) == (n == 0));
+  CHECK((set.kind == RLPC_VALUE_KIND_SMOOTHING) == (n == 0));
   float* values = numbers(count);
   float* drawn = numbers(n * d->num_drawn);
   uint32_t* of_corner = numbers(d->num_corners);
   CHECK(rlpc_decoder_attribute_floats(decoder, s, values, count) == RLPC_OK);
   CHECK(rlpc_decoder_attribute_of_corners(decoder, s, of_corner, d->num_corners) == RLPC_OK);
   const rlpc_status status = rlpc_decoder_split_floats(decoder, s, drawn, n * d->num_drawn);
-  const int has_drawn = n > 0 && (set.domain == RLPC_OF_VERTICES ||
-                                  (set.domain == RLPC_OF_CORNERS && d->num_corners > 0));
+  const int has_drawn = n > 0 && (set.domain == RLPC_DOMAIN_VERTICES ||
+                                  (set.domain == RLPC_DOMAIN_CORNERS && d->num_corners > 0));
   CHECK(status == (has_drawn ? RLPC_OK : RLPC_BAD_ARGUMENT));
   for (size_t c = 0; c < d->num_corners && n > 0; ++c) {
     CHECK(of_corner[c] < set.num_values);
@@ -120,10 +120,10 @@ static void check_frame(rlpc_decoder* decoder, const drawing* d) {
   output.split = 1;
   output.positions.data = drawn;
   output.positions.num_bytes = 12 * n;
-  output.positions.format = RLPC_INT32;
+  output.positions.format = RLPC_FORMAT_INT32;
   output.normals.data = normals;
   output.normals.num_bytes = 12 * n - 1;
-  output.normals.format = RLPC_FLOAT;
+  output.normals.format = RLPC_FORMAT_FLOAT;
   CHECK(rlpc_decoder_frame(decoder, last, &output) == RLPC_BAD_ARGUMENT);
   output.normals.num_bytes = 12 * n;
   CHECK(rlpc_decoder_frame(decoder, last, &output) == RLPC_OK);
@@ -138,7 +138,7 @@ static void check_frame(rlpc_decoder* decoder, const drawing* d) {
   if (set != RLPC_ALL) {
     CHECK(rlpc_decoder_attribute(decoder, set, &normal, sizeof normal) == RLPC_OK);
   }
-  if (normal.kind == RLPC_SMOOTHING && normal.domain == RLPC_OF_CORNERS) {
+  if (normal.kind == RLPC_VALUE_KIND_SMOOTHING && normal.domain == RLPC_DOMAIN_CORNERS) {
     CHECK(rlpc_decoder_attribute_of_corners(decoder, set, of_corner, d->num_corners) ==
           RLPC_OK);
     for (size_t c = 1; c < d->num_corners; ++c) {
@@ -167,10 +167,10 @@ static void check_stream(void) {
 // uv0, normal, colour0 and material of 20 vertices and 24 triangles.
 static void check_sets(void) {
   static const char* const kNames[] = {"uv0", "normal", "colour0", "material"};
-  static const uint32_t kDomains[] = {RLPC_OF_CORNERS, RLPC_OF_CORNERS, RLPC_OF_VERTICES,
-                                      RLPC_OF_TRIANGLES};
-  static const uint32_t kKinds[] = {RLPC_INTEGERS, RLPC_UNIT_VECTORS, RLPC_INTEGERS,
-                                    RLPC_INTEGERS};
+  static const uint32_t kDomains[] = {RLPC_DOMAIN_CORNERS, RLPC_DOMAIN_CORNERS,
+                                      RLPC_DOMAIN_VERTICES, RLPC_DOMAIN_TRIANGLES};
+  static const uint32_t kKinds[] = {RLPC_VALUE_KIND_INTEGERS, RLPC_VALUE_KIND_UNIT_VECTORS,
+                                    RLPC_VALUE_KIND_INTEGERS, RLPC_VALUE_KIND_INTEGERS};
   static const uint32_t kComponents[] = {2, 3, 3, 1};
   rlpc_decoder* decoder = opened();
   uint32_t num_sets = 0;

@@ -75,10 +75,10 @@ static rlpc_frame_output output_to(float* xyz, float* directions) {
   rlpc_frame_output_init(&output, sizeof output);
   output.positions.data = xyz;
   output.positions.num_bytes = VALUES * sizeof *xyz;
-  output.positions.format = RLPC_FLOAT;
+  output.positions.format = RLPC_FORMAT_FLOAT;
   output.normals.data = directions;
   output.normals.num_bytes = VALUES * sizeof *directions;
-  output.normals.format = RLPC_FLOAT;
+  output.normals.format = RLPC_FORMAT_FLOAT;
   return output;
 }
 
@@ -200,10 +200,10 @@ static void test_formats(void) {
   signed char bytes[VALUES];
   output.positions.data = shorts;
   output.positions.num_bytes = sizeof shorts;
-  output.positions.format = RLPC_INT16;
+  output.positions.format = RLPC_FORMAT_INT16;
   output.normals.data = bytes;
   output.normals.num_bytes = sizeof bytes;
-  output.normals.format = RLPC_INT8;
+  output.normals.format = RLPC_FORMAT_INT8;
   CHECK(blend_of(decoder, 3, 4, 0.25, &output) == RLPC_OK);
   for (int i = 0; i < VALUES; ++i) {
     const double wanted = 0.75 * (double)positions[3][i] + 0.25 * (double)positions[4][i];
@@ -220,9 +220,9 @@ static void test_formats(void) {
       CHECK(fabs(bytes[3 * v + c] - 127 * sum[c] / sqrt(squares)) < 0.51);
     }
   }
-  output.positions.format = RLPC_HALF;
+  output.positions.format = RLPC_FORMAT_HALF;
   CHECK(blend_of(decoder, 3, 4, 0.25, &output) == RLPC_OK);
-  output.positions.format = RLPC_INT32;
+  output.positions.format = RLPC_FORMAT_INT32;
   output.positions.num_bytes = SIZE_MAX;
   CHECK(blend_of(decoder, 3, 4, 0.25, &output) == RLPC_BAD_ARGUMENT);
   CHECK(strstr(rlpc_decoder_error_text(decoder), "no integers") != NULL);

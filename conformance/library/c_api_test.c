@@ -168,7 +168,8 @@ static void test_clip_times(rlpc_decoder* decoder) {
 static void check_info(rlpc_decoder* decoder) {
   rlpc_stream_info info;
   CHECK(rlpc_decoder_info(decoder, &info, sizeof info) == RLPC_OK);
-  CHECK(info.struct_size == sizeof info && info.profile == RLPC_MAIN && info.level == 1);
+  CHECK(info.struct_size == sizeof info && info.profile == RLPC_PROFILE_MAIN &&
+        info.level == 1);
   CHECK(info.num_vertices == VERTICES && info.num_triangles == TRIANGLES);
   CHECK(info.num_frames == FRAMES && info.has_vertex_order == 1);
   CHECK(info.frame_rate_numerator == 30 && info.frame_rate_denominator == 1);
@@ -181,7 +182,7 @@ static void check_info(rlpc_decoder* decoder) {
   } older = {0, 99, 99};
   CHECK(rlpc_decoder_info(decoder, (rlpc_stream_info*)(void*)&older,
                           offsetof(rlpc_stream_info, level)) == RLPC_OK);
-  CHECK(older.profile == RLPC_MAIN && older.guard == 99);
+  CHECK(older.profile == RLPC_PROFILE_MAIN && older.guard == 99);
   CHECK(rlpc_decoder_info(decoder, NULL, sizeof info) == RLPC_BAD_ARGUMENT);
   CHECK(rlpc_decoder_info(decoder, &info, 0) == RLPC_BAD_ARGUMENT);
 
@@ -482,10 +483,10 @@ static void test_encoder_arguments(void) {
     CHECK_TEXT(text, "is not in the range of 1 to 256");
   }
   options = small_gofs();
-  options.profile = RLPC_BASELINE;
-  options.preset = RLPC_FAST;
+  options.profile = RLPC_PROFILE_BASELINE;
+  options.preset = RLPC_PRESET_FAST;
   options.target = RLPC_TARGET_BPVF;
-  options.hash_mode = RLPC_HASH_NONE;
+  options.hash_mode = RLPC_HASH_MODE_NONE;
   CHECK(create_with(&format, &options, text) == RLPC_OK);
 
   uint32_t order[VERTICES];
@@ -544,7 +545,7 @@ static void test_temporal_layers(void) {
   const rlpc_frame_format format = strip_format();
   rlpc_encode_options options = small_gofs();
   CHECK(options.temporal_layers == 1);
-  options.profile = RLPC_HIGH;
+  options.profile = RLPC_PROFILE_HIGH;
   options.temporal_layers = 3;
   rlpc_encoder* encoder;
   memset(&stream, 0, sizeof stream);
@@ -589,8 +590,8 @@ static void test_low_delay(void) {
   CHECK(rlpc_encoder_create(&format, &options, append, &stream, &encoder) == RLPC_BAD_INPUT);
   CHECK_TEXT(rlpc_encoder_error_text(encoder), "needs --profile high");
   rlpc_encoder_close(encoder);
-  options.profile = RLPC_HIGH;
-  options.gof_kind = RLPC_KIND_FRAMES;
+  options.profile = RLPC_PROFILE_HIGH;
+  options.gof_kind = RLPC_GOF_KIND_INTER;
   options.target = RLPC_TARGET_LOSSLESS;
   options.target_value = 12;
   CHECK(rlpc_encoder_create(&format, &options, append, &stream, &encoder) == RLPC_OK);

@@ -33,7 +33,7 @@ static int show(const rlpc_clip* clip, double seconds, uint32_t repeats) {
   rlpc_frame_output_init(&output, sizeof output);
   output.positions.data = xyz;
   output.positions.num_bytes = 3 * sizeof *xyz * info.num_vertices;
-  output.positions.format = RLPC_FLOAT;
+  output.positions.format = RLPC_FORMAT_FLOAT;
   if (rlpc_decoder_blend(decoder, &blend, &output) != RLPC_OK) return 1;
   printf("%u %.17g", (unsigned)frame, place);
   for (int i = 0; i < SHOWN; ++i) printf(" %.9g", (double)xyz[i]);

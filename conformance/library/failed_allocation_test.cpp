@@ -29,8 +29,8 @@ struct Case {
 
 std::string name_of(const testing::TestParamInfo<Case>& info) {
   const Case& c = info.param;
-  return std::string(c.profile == RLPC_MAIN ? "Main" : "Baseline") +
-         (c.preset == RLPC_FAST ? "Fast" : "Medium") + (c.once ? "Once" : "ForGood") +
+  return std::string(c.profile == RLPC_PROFILE_MAIN ? "Main" : "Baseline") +
+         (c.preset == RLPC_PRESET_FAST ? "Fast" : "Medium") + (c.once ? "Once" : "ForGood") +
          std::to_string(c.threads) + "Threads";
 }
 
@@ -43,7 +43,7 @@ class FailedAllocation : public testing::TestWithParam<Case> {
     options_.target_value = 2.0;
     options_.gof_frames = kGofFrames;
     options_.keep_order = 1;
-    options_.hash_mode = RLPC_HASH_FRAME;
+    options_.hash_mode = RLPC_HASH_MODE_FRAME;
     options_.threads = GetParam().threads;
     options_.metadata = "{\"title\":\"strip\"}";
     stream_.reserve(1 << 16);
@@ -151,23 +151,25 @@ TEST_P(DecoderWithoutMemory, EndsAndFreesAllMemory) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Library, EncoderWithoutMemory,
-                         testing::Values(Case{RLPC_BASELINE, RLPC_FAST, false, 1},
-                                         Case{RLPC_BASELINE, RLPC_MEDIUM, true, 1},
-                                         Case{RLPC_MAIN, RLPC_MEDIUM, false, 1},
-                                         Case{RLPC_MAIN, RLPC_MEDIUM, false, 2},
-                                         Case{RLPC_MAIN, RLPC_FAST, true, 1},
-                                         Case{RLPC_MAIN, RLPC_FAST, true, 2}),
-                         name_of);
-INSTANTIATE_TEST_SUITE_P(Library, DecoderWithoutMemory,
-                         testing::Values(Case{RLPC_BASELINE, RLPC_FAST, false, 1},
-                                         Case{RLPC_BASELINE, RLPC_FAST, true, 1},
-                                         Case{RLPC_BASELINE, RLPC_FAST, false, 2},
-                                         Case{RLPC_BASELINE, RLPC_FAST, true, 2},
-                                         Case{RLPC_MAIN, RLPC_FAST, false, 1},
-                                         Case{RLPC_MAIN, RLPC_FAST, true, 1},
-                                         Case{RLPC_MAIN, RLPC_FAST, false, 2},
-                                         Case{RLPC_MAIN, RLPC_FAST, true, 2}),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(
+    Library, EncoderWithoutMemory,
+    testing::Values(Case{RLPC_PROFILE_BASELINE, RLPC_PRESET_FAST, false, 1},
+                    Case{RLPC_PROFILE_BASELINE, RLPC_PRESET_MEDIUM, true, 1},
+                    Case{RLPC_PROFILE_MAIN, RLPC_PRESET_MEDIUM, false, 1},
+                    Case{RLPC_PROFILE_MAIN, RLPC_PRESET_MEDIUM, false, 2},
+                    Case{RLPC_PROFILE_MAIN, RLPC_PRESET_FAST, true, 1},
+                    Case{RLPC_PROFILE_MAIN, RLPC_PRESET_FAST, true, 2}),
+    name_of);
+INSTANTIATE_TEST_SUITE_P(
+    Library, DecoderWithoutMemory,
+    testing::Values(Case{RLPC_PROFILE_BASELINE, RLPC_PRESET_FAST, false, 1},
+                    Case{RLPC_PROFILE_BASELINE, RLPC_PRESET_FAST, true, 1},
+                    Case{RLPC_PROFILE_BASELINE, RLPC_PRESET_FAST, false, 2},
+                    Case{RLPC_PROFILE_BASELINE, RLPC_PRESET_FAST, true, 2},
+                    Case{RLPC_PROFILE_MAIN, RLPC_PRESET_FAST, false, 1},
+                    Case{RLPC_PROFILE_MAIN, RLPC_PRESET_FAST, true, 1},
+                    Case{RLPC_PROFILE_MAIN, RLPC_PRESET_FAST, false, 2},
+                    Case{RLPC_PROFILE_MAIN, RLPC_PRESET_FAST, true, 2}),
+    name_of);
 
 }  // namespace

@@ -63,25 +63,25 @@ static double half(uint16_t bits) {
 
 // Returns value c of vertex v in the buffer, in a format.
 static double value(uint32_t format, size_t stride, int v, int c) {
-  const size_t bytes = format == RLPC_INT8                           ? 1
-                       : format == RLPC_INT16 || format == RLPC_HALF ? 2
-                                                                     : 4;
+  const size_t bytes = format == RLPC_FORMAT_INT8                                  ? 1
+                       : format == RLPC_FORMAT_INT16 || format == RLPC_FORMAT_HALF ? 2
+                                                                                   : 4;
   const unsigned char* at =
       buffer + (size_t)v * (stride == 0 ? 3 * bytes : stride) + (size_t)c * bytes;
   int32_t wide;
   int16_t narrow;
   float real;
   switch (format) {
-    case RLPC_INT32:
+    case RLPC_FORMAT_INT32:
       memcpy(&wide, at, sizeof wide);
       return wide;
-    case RLPC_FLOAT:
+    case RLPC_FORMAT_FLOAT:
       memcpy(&real, at, sizeof real);
       return (double)real;
-    case RLPC_HALF:
+    case RLPC_FORMAT_HALF:
       memcpy(&narrow, at, sizeof narrow);
       return half((uint16_t)narrow);
-    case RLPC_INT16:
+    case RLPC_FORMAT_INT16:
       memcpy(&narrow, at, sizeof narrow);
       return narrow;
     default:
@@ -95,7 +95,8 @@ static void test_positions(void) {
   CHECK(rlpc_decoder_info(decoder, &info, sizeof info) == RLPC_OK);
   double scale[3], offset[3];
   CHECK(rlpc_decoder_int16_scale(decoder, scale, offset) == RLPC_OK);
-  static const uint32_t formats[] = {RLPC_INT32, RLPC_FLOAT, RLPC_HALF, RLPC_INT16};
+  static const uint32_t formats[] = {RLPC_FORMAT_INT32, RLPC_FORMAT_FLOAT, RLPC_FORMAT_HALF,
+                                     RLPC_FORMAT_INT16};
   for (int i = 0; i < 8; ++i) {
     const uint32_t format = formats[i / 2];
     const size_t stride = i % 2 == 0 ? 0 : STRIDE;
@@ -104,10 +105,11 @@ static void test_positions(void) {
       for (int c = 0; c < 3; ++c) {
         double x = value(format, stride, v, c);
         double most = 1.1e-4;
-        if (format == RLPC_INT32) x = ldexp(x + info.grid_origin[c], info.grid_log2_step);
-        if (format == RLPC_INT16) x = x * scale[c] + offset[c];
-        if (format == RLPC_INT16) most += scale[c] / 2;
-        if (format == RLPC_HALF) most += 5.0 / 2048;
+        if (format == RLPC_FORMAT_INT32)
+          x = ldexp(x + info.grid_origin[c], info.grid_log2_step);
+        if (format == RLPC_FORMAT_INT16) x = x * scale[c] + offset[c];
+        if (format == RLPC_FORMAT_INT16) most += scale[c] / 2;
+        if (format == RLPC_FORMAT_HALF) most += 5.0 / 2048;
         CHECK(fabs(x - expected[v][c]) <= most);
       }
     }
@@ -119,7 +121,7 @@ static void test_positions(void) {
   int16_t small[3 * VERTICES];
   output.positions.data = small;
   output.positions.num_bytes = sizeof small;
-  output.positions.format = RLPC_INT16;
+  output.positions.format = RLPC_FORMAT_INT16;
   for (int c = 0; c < 3; ++c) output.int16_scale[c] = 0.5;
   output.int16_offset[0] = 1;
   output.int16_scale[2] = 1e-9;
@@ -135,7 +137,8 @@ static void test_positions(void) {
 static void test_normals(void) {
   // At vertex 2 the normal of the small triangle, at 3 of the large one; at 0 their sum, by
   // area (2 to 8) or by angle (equal there); at 1 by angles of atan(1/2) and atan(2).
-  static const uint32_t formats[] = {RLPC_FLOAT, RLPC_HALF, RLPC_INT16, RLPC_INT8};
+  static const uint32_t formats[] = {RLPC_FORMAT_FLOAT, RLPC_FORMAT_HALF, RLPC_FORMAT_INT16,
+                                     RLPC_FORMAT_INT8};
   static const double units[] = {1, 1, 32767, 127};
   for (int i = 0; i < 8; ++i) {
     const uint32_t format = formats[i / 2];
@@ -146,7 +149,7 @@ static void test_normals(void) {
     output.normals.num_bytes = sizeof buffer;
     output.normals.stride = STRIDE;
     output.normals.format = format;
-    output.normal_weight = by_angle ? RLPC_BY_ANGLE : RLPC_BY_AREA;
+    output.normal_weight = by_angle ? RLPC_NORMAL_WEIGHT_ANGLE : RLPC_NORMAL_WEIGHT_AREA;
     CHECK(rlpc_decoder_frame(decoder, 3, &output) == RLPC_OK);
     const double small_weights[VERTICES] = {by_angle ? 1 : 2, by_angle ? atan(0.5) : 2, 1, 0};
     const double large_weights[VERTICES] = {by_angle ? 1 : 8, by_angle ? atan(2) : 8, 0, 1};
@@ -155,23 +158,24 @@ static void test_normals(void) {
       const double normal[3] = {0, large_weights[v] / length, small_weights[v] / length};
       for (int c = 0; c < 3; ++c) {
         const double x = value(format, STRIDE, v, c) / units[i / 2];
-        CHECK(fabs(x - normal[c]) <= 0.002 + 0.5 / units[i / 2] * (format >= RLPC_INT16));
+        CHECK(fabs(x - normal[c]) <=
+              0.002 + 0.5 / units[i / 2] * (format >= RLPC_FORMAT_INT16));
       }
     }
   }
 }
 
 static void test_refusals(void) {
-  CHECK(give(&output.positions, RLPC_INT8, 0) == RLPC_BAD_ARGUMENT);
+  CHECK(give(&output.positions, RLPC_FORMAT_INT8, 0) == RLPC_BAD_ARGUMENT);
   CHECK(strstr(rlpc_decoder_error_text(decoder), "positions: they have no format 5") != NULL);
-  CHECK(give(&output.normals, RLPC_INT32, 0) == RLPC_BAD_ARGUMENT);
+  CHECK(give(&output.normals, RLPC_FORMAT_INT32, 0) == RLPC_BAD_ARGUMENT);
   CHECK(give(&output.positions, 0, 0) == RLPC_BAD_ARGUMENT);
-  CHECK(give(&output.positions, RLPC_FLOAT, 11) == RLPC_BAD_ARGUMENT);
+  CHECK(give(&output.positions, RLPC_FORMAT_FLOAT, 11) == RLPC_BAD_ARGUMENT);
   CHECK(strstr(rlpc_decoder_error_text(decoder), "a stride of 11 bytes") != NULL);
-  CHECK(give(&output.positions, RLPC_FLOAT, STRIDE + 1) == RLPC_OK);
-  CHECK(give(&output.positions, RLPC_FLOAT, STRIDE + 6) == RLPC_BAD_ARGUMENT);
+  CHECK(give(&output.positions, RLPC_FORMAT_FLOAT, STRIDE + 1) == RLPC_OK);
+  CHECK(give(&output.positions, RLPC_FORMAT_FLOAT, STRIDE + 6) == RLPC_BAD_ARGUMENT);
   CHECK(strstr(rlpc_decoder_error_text(decoder), "has 116 bytes, not 117") != NULL);
-  CHECK(give(&output.positions, RLPC_FLOAT, SIZE_MAX / 2) == RLPC_BAD_ARGUMENT);
+  CHECK(give(&output.positions, RLPC_FORMAT_FLOAT, SIZE_MAX / 2) == RLPC_BAD_ARGUMENT);
   output.struct_size = 0;
   CHECK(rlpc_decoder_frame(decoder, 0, &output) == RLPC_BAD_ARGUMENT);
   rlpc_frame_output_init(&output, sizeof output);
@@ -261,7 +265,7 @@ static void test_one_vertex(void) {
     wanted.positions.data = xyz;
     wanted.positions.num_bytes = 12;
     wanted.positions.stride = strides[i];
-    wanted.positions.format = RLPC_FLOAT;
+    wanted.positions.format = RLPC_FORMAT_FLOAT;
     CHECK(rlpc_decoder_frame(one, 0, &wanted) == RLPC_OK);
     CHECK(xyz[3] == 77);
   }

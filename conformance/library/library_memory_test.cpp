@@ -19,7 +19,7 @@ constexpr std::uint32_t kFrames = 4 * kGofFrames;
 std::vector<std::uint8_t> encoded_strip() {
   rlpc_encode_options options;
   rlpc_encode_options_init(&options, sizeof options);
-  options.preset = RLPC_FAST;
+  options.preset = RLPC_PRESET_FAST;
   options.target_value = 2.0;
   options.gof_frames = kGofFrames;
   const rlpc::WavingStrip strip(kVertices, kFrames);

@@ -145,10 +145,10 @@ rlpc_status decode(const Bytes& stream, Heap* heap, std::uint32_t threads) {
   normals.resize(xyz.size());
   rlpc_frame_output output;
   rlpc_frame_output_init(&output, sizeof output);
-  output.positions = {xyz.data(), xyz.size() * sizeof(float), 0, RLPC_FLOAT};
+  output.positions = {xyz.data(), xyz.size() * sizeof(float), 0, RLPC_FORMAT_FLOAT};
   is_decoding = threads == 1;
   while (status == RLPC_OK) status = rlpc_decoder_next(decoder, &output);
-  output.normals = {normals.data(), normals.size() * sizeof(float), 0, RLPC_FLOAT};
+  output.normals = {normals.data(), normals.size() * sizeof(float), 0, RLPC_FORMAT_FLOAT};
   if (status == RLPC_END) status = RLPC_OK;
   for (std::uint32_t f = info.num_frames; status == RLPC_OK && f-- > 0;) {
     status = rlpc_decoder_frame(decoder, f, &output);

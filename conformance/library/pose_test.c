@@ -66,7 +66,7 @@ static void decode(uint32_t frame) {
   rlpc_frame_output_init(&output, sizeof output);
   output.positions.data = frame_xyz;
   output.positions.num_bytes = sizeof frame_xyz;
-  output.positions.format = RLPC_FLOAT;
+  output.positions.format = RLPC_FORMAT_FLOAT;
   CHECK(rlpc_decoder_frame(decoder, frame, &output) == RLPC_OK);
 }
 
@@ -200,7 +200,7 @@ static void open_stream(void) {
 }
 
 int main(void) {
-  encode(RLPC_MAIN);
+  encode(RLPC_PROFILE_MAIN);
   open_stream();
   rlpc_pose pose;
   CHECK(rlpc_decoder_pose(decoder, &pose, sizeof pose) == RLPC_BAD_ARGUMENT);  // no frame yet

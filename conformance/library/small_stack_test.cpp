@@ -75,7 +75,7 @@ void decode(const std::string& path, std::uint32_t threads) {
     std::vector<float> xyz(3 * std::size_t{info.num_vertices});
     rlpc_frame_output output;
     rlpc_frame_output_init(&output, sizeof output);
-    output.positions = {xyz.data(), sizeof(float) * xyz.size(), 0, RLPC_FLOAT};
+    output.positions = {xyz.data(), sizeof(float) * xyz.size(), 0, RLPC_FORMAT_FLOAT};
     std::uint32_t num_sets = 0;
     rlpc_decoder_attributes(decoder, &num_sets);
     std::uint32_t num_drawn = 0;
@@ -109,7 +109,7 @@ TEST(SmallStack, SufficesForTheEncoder) {
   std::vector<std::uint8_t> stream;
   stream.reserve(1 << 20);
   for (const std::uint32_t profile : {0U, 1U, 2U}) {
-    for (const std::uint32_t preset : {RLPC_FAST, RLPC_SLOW}) {
+    for (const std::uint32_t preset : {RLPC_PRESET_FAST, RLPC_PRESET_SLOW}) {
       for (const double kg : {0.0, 0.5}) {
         rlpc_encode_options options;
         rlpc_encode_options_init(&options, sizeof options);

@@ -14,11 +14,11 @@ namespace {
 
 std::size_t bytes_of(std::uint32_t format) {
   switch (format) {
-    case RLPC_INT32:
-    case RLPC_FLOAT:
+    case RLPC_FORMAT_INT32:
+    case RLPC_FORMAT_FLOAT:
       return 4;
-    case RLPC_HALF:
-    case RLPC_INT16:
+    case RLPC_FORMAT_HALF:
+    case RLPC_FORMAT_INT16:
       return 2;
     default:
       return 1;
@@ -105,13 +105,13 @@ void write_positions(const Triples<std::int32_t>& positions, const Grid& grid,
     return float_position(grid, c, positions.at(v)[c]);
   };
   switch (channel.format) {
-    case RLPC_INT32:
+    case RLPC_FORMAT_INT32:
       write(channel, count, [&](std::size_t v, std::size_t c) { return positions.at(v)[c]; });
       break;
-    case RLPC_FLOAT:
+    case RLPC_FORMAT_FLOAT:
       write(channel, count, as_float);
       break;
-    case RLPC_HALF:
+    case RLPC_FORMAT_HALF:
       write(channel, count,
             [&](std::size_t v, std::size_t c) { return half_of(as_float(v, c)); });
       break;
@@ -137,10 +137,10 @@ void write_mixed_positions(const Mix<std::int32_t>& positions, const Grid& grid,
     return float_position(grid, c, positions.at(v, c));
   };
   switch (channel.format) {
-    case RLPC_FLOAT:
+    case RLPC_FORMAT_FLOAT:
       write(channel, count, as_float);
       break;
-    case RLPC_HALF:
+    case RLPC_FORMAT_HALF:
       write(channel, count,
             [&](std::size_t v, std::size_t c) { return half_of(as_float(v, c)); });
       break;
@@ -166,13 +166,13 @@ void write_unit_normals(const rlpc_channel& channel, std::size_t count, const No
     });
   };
   switch (channel.format) {
-    case RLPC_FLOAT:
+    case RLPC_FORMAT_FLOAT:
       write_as([](double x) { return static_cast<float>(x); });
       break;
-    case RLPC_HALF:
+    case RLPC_FORMAT_HALF:
       write_as([](double x) { return half_of(static_cast<float>(x)); });
       break;
-    case RLPC_INT16:
+    case RLPC_FORMAT_INT16:
       write_as([](double x) { return rounded<std::int16_t>(32767 * x); });
       break;
     default:

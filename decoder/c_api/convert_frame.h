@@ -60,7 +60,7 @@ float float_position(const Grid& grid, std::size_t axis, double position);
 // Writes positions, in grid units.
 void write_positions(const Triples<std::int32_t>& positions, const Grid& grid,
                      const Int16Scale& scale, const rlpc_channel& channel);
-// Writes interpolated positions; the format is not RLPC_INT32.
+// Writes interpolated positions; the format is not RLPC_FORMAT_INT32.
 void write_mixed_positions(const Mix<std::int32_t>& positions, const Grid& grid,
                            const Int16Scale& scale, const rlpc_channel& channel);
 // Writes normals as unit vectors. sums: vectors of any length.

@@ -41,11 +41,11 @@ rlpc_status check_channel(rlpc_decoder& handle, const char* name, const rlpc_cha
 }  // namespace
 
 rlpc_status check_output(rlpc_decoder& handle, const rlpc_frame_output& output) {
-  constexpr std::array<std::uint32_t, 4> kOfPositions{RLPC_INT32, RLPC_FLOAT, RLPC_HALF,
-                                                      RLPC_INT16};
-  constexpr std::array<std::uint32_t, 4> kOfNormals{RLPC_FLOAT, RLPC_HALF, RLPC_INT16,
-                                                    RLPC_INT8};
-  if (output.normal_weight > RLPC_BY_ANGLE) {
+  constexpr std::array<std::uint32_t, 4> kOfPositions{RLPC_FORMAT_INT32, RLPC_FORMAT_FLOAT,
+                                                      RLPC_FORMAT_HALF, RLPC_FORMAT_INT16};
+  constexpr std::array<std::uint32_t, 4> kOfNormals{RLPC_FORMAT_FLOAT, RLPC_FORMAT_HALF,
+                                                    RLPC_FORMAT_INT16, RLPC_FORMAT_INT8};
+  if (output.normal_weight > RLPC_NORMAL_WEIGHT_ANGLE) {
     return bad_output(handle,
                       "normal_weight: there is no " + std::to_string(output.normal_weight));
   }

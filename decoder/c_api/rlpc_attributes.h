@@ -29,17 +29,17 @@ extern "C" {
 
 // NOLINTBEGIN(readability-identifier-naming): C naming.
 typedef enum rlpc_domain {
-  RLPC_OF_VERTICES = 0,   // one value per vertex, in order
-  RLPC_OF_CORNERS = 1,    // corners refer to values: rlpc_decoder_attribute_of_corners
-  RLPC_OF_TRIANGLES = 2,  // one value per triangle, in order
+  RLPC_DOMAIN_VERTICES = 0,   // one value per vertex, in order
+  RLPC_DOMAIN_CORNERS = 1,    // corners refer to values: rlpc_decoder_attribute_of_corners
+  RLPC_DOMAIN_TRIANGLES = 2,  // one value per triangle, in order
 } rlpc_domain;
 
 typedef enum rlpc_value_kind {
-  RLPC_INTEGERS = 0,
-  RLPC_UNIT_VECTORS = 1,
-  RLPC_FLOATS = 2,
+  RLPC_VALUE_KIND_INTEGERS = 0,
+  RLPC_VALUE_KIND_UNIT_VECTORS = 1,
+  RLPC_VALUE_KIND_FLOATS = 2,
   // No values: defines which corners share a normal, computed from the positions of any frame.
-  RLPC_SMOOTHING = 3,
+  RLPC_VALUE_KIND_SMOOTHING = 3,
 } rlpc_value_kind;
 
 typedef struct rlpc_attribute {
@@ -71,7 +71,8 @@ RLPC_API uint32_t rlpc_decoder_find_attribute(const struct rlpc_decoder* decoder
 // Copies the values of a set. num_floats, num_integers: num_values * num_components.
 // _floats: texture coordinates, colours from 0 to 1, unit vectors as x, y and z, or other
 // numbers of the encoder's input, in the precision of the stream. _integers: values without
-// scale and offset, or the bits of RLPC_FLOATS; RLPC_BAD_ARGUMENT for RLPC_UNIT_VECTORS.
+// scale and offset, or the bits of RLPC_VALUE_KIND_FLOATS; RLPC_BAD_ARGUMENT for
+// RLPC_VALUE_KIND_UNIT_VECTORS.
 RLPC_API rlpc_status rlpc_decoder_attribute_floats(struct rlpc_decoder* decoder, uint32_t set,
                                                    float* values, size_t num_floats);
 RLPC_API rlpc_status rlpc_decoder_attribute_integers(struct rlpc_decoder* decoder, uint32_t set,

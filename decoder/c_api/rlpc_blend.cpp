@@ -15,7 +15,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kOfSet = RLPC_BY_ANGLE + 1;  // normals of the set `normal`
+constexpr std::uint32_t kOfSet = RLPC_NORMAL_WEIGHT_ANGLE + 1;  // normals of the set `normal`
 
 rlpc_status check_blend(rlpc_decoder& handle, const rlpc_blend& blend,
                         const rlpc_frame_output& output) {
@@ -25,8 +25,9 @@ rlpc_status check_blend(rlpc_decoder& handle, const rlpc_blend& blend,
   if (!(blend.weight >= 0 && blend.weight <= 1)) {
     return bad_output(handle, "weight: expected a number from 0 to 1");
   }
-  if (output.positions.data != nullptr && output.positions.format == RLPC_INT32) {
-    return bad_output(handle, "positions: between frames, there are no integers (RLPC_INT32)");
+  if (output.positions.data != nullptr && output.positions.format == RLPC_FORMAT_INT32) {
+    return bad_output(handle,
+                      "positions: between frames, there are no integers (RLPC_FORMAT_INT32)");
   }
   return check_output(handle, output);
 }
@@ -64,8 +65,8 @@ void find_normals(rlpc_decoder& handle, BlendFrame& frame, std::uint32_t normals
   if (normals_of == kOfSet) {
     sums = handle.drawn->normals().sums(std::span<const std::int32_t>(frame.positions));
   } else {
-    sum_normals(frame.positions, handle.decoder->triangles(), normals_of == RLPC_BY_ANGLE,
-                handle.normal_sums);
+    sum_normals(frame.positions, handle.decoder->triangles(),
+                normals_of == RLPC_NORMAL_WEIGHT_ANGLE, handle.normal_sums);
     sums = handle.normal_sums;
   }
   frame.normals.resize(sums.size());

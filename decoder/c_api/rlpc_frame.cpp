@@ -47,7 +47,7 @@ rlpc_status give_frame(rlpc_decoder& handle, const rlpc_frame_output* wanted,
         output.normals);
   } else {
     sum_normals(handle.positions, handle.decoder->triangles(),
-                output.normal_weight == RLPC_BY_ANGLE, handle.normal_sums);
+                output.normal_weight == RLPC_NORMAL_WEIGHT_ANGLE, handle.normal_sums);
     write_normals({handle.normal_sums, vertices}, output.normals);
   }
   return RLPC_OK;

@@ -3,10 +3,10 @@
 //
 //   rlpc_frame_output output;
 //   rlpc_frame_output_init(&output, sizeof output);
-//   output.positions = (rlpc_channel){vertices, vertices_bytes, sizeof(vertex), RLPC_FLOAT};
-//   const size_t normal_bytes = vertices_bytes - offsetof(vertex, normal);
+//   output.positions = (rlpc_channel){vertices, vertices_bytes, sizeof(vertex),
+//   RLPC_FORMAT_FLOAT}; const size_t normal_bytes = vertices_bytes - offsetof(vertex, normal);
 //   output.normals =
-//       (rlpc_channel){&vertices->normal, normal_bytes, sizeof(vertex), RLPC_INT8};
+//       (rlpc_channel){&vertices->normal, normal_bytes, sizeof(vertex), RLPC_FORMAT_INT8};
 //   rlpc_decoder_frame(decoder, 17, &output);
 #pragma once
 
@@ -21,16 +21,17 @@ extern "C" {
 
 // NOLINTBEGIN(readability-identifier-naming): C naming.
 typedef enum rlpc_format {
-  RLPC_INT32 = 1,  // positions: grid units, exact
-  RLPC_FLOAT = 2,  // 32 bits, in the units of the encoder's input
-  RLPC_HALF = 3,   // IEEE 754 binary16, rounded to nearest; infinity from 65520 on
-  RLPC_INT16 = 4,  // positions: see int16_scale; normals: 32767 times the vector
-  RLPC_INT8 = 5,   // normals: 127 times the vector
+  RLPC_FORMAT_INT32 = 1,  // positions: grid units, exact
+  RLPC_FORMAT_FLOAT = 2,  // 32 bits, in the units of the encoder's input
+  RLPC_FORMAT_HALF = 3,   // IEEE 754 binary16, rounded to nearest; infinity from 65520 on
+  RLPC_FORMAT_INT16 = 4,  // positions: see int16_scale; normals: 32767 times the vector
+  RLPC_FORMAT_INT8 = 5,   // normals: 127 times the vector
 } rlpc_format;
 
 typedef enum rlpc_normal_weight {
-  RLPC_BY_AREA = 0,   // area of each triangle around a vertex
-  RLPC_BY_ANGLE = 1,  // angle of each triangle at the vertex; independent of triangulation
+  RLPC_NORMAL_WEIGHT_AREA = 0,  // area of each triangle around a vertex
+  RLPC_NORMAL_WEIGHT_ANGLE =
+      1,  // angle of each triangle at the vertex; independent of triangulation
 } rlpc_normal_weight;
 
 // Three values per vertex, one vertex every stride bytes; bytes in between are not written.
@@ -43,14 +44,14 @@ typedef struct rlpc_channel {
 
 typedef struct rlpc_frame_output {
   size_t struct_size;      // set by rlpc_frame_output_init
-  rlpc_channel positions;  // RLPC_INT32, _FLOAT, _HALF or _INT16
-  // Unit vectors computed from the geometry of the frame, RLPC_FLOAT, _HALF, _INT16 or _INT8;
-  // 0, 0, 1 where the triangles around a vertex have no area. Time: one pass over all
+  rlpc_channel positions;  // RLPC_FORMAT_INT32, _FLOAT, _HALF or _INT16
+  // Unit vectors computed from the geometry of the frame, RLPC_FORMAT_FLOAT, _HALF, _INT16 or
+  // _INT8; 0, 0, 1 where the triangles around a vertex have no area. Time: one pass over all
   // triangles.
   rlpc_channel normals;
   uint32_t normal_weight;  // rlpc_normal_weight
-  // Scale and offset of RLPC_INT16 positions: coordinate = value * scale + offset for each
-  // axis, rounded to the nearest value and clipped to 16 bits. A scale of 0, the default:
+  // Scale and offset of RLPC_FORMAT_INT16 positions: coordinate = value * scale + offset for
+  // each axis, rounded to the nearest value and clipped to 16 bits. A scale of 0, the default:
   // covers range_min to range_max of rlpc_stream_info (rlpc_decoder_int16_scale).
   double int16_scale[3];
   double int16_offset[3];

@@ -62,10 +62,10 @@ struct rlpc_decoder;
 RLPC_API void rlpc_blend_init(rlpc_blend* blend, size_t struct_size);
 
 // Decodes two frames and writes their blend. Positions: computed in double precision and
-// rounded once; RLPC_FLOAT, _HALF or _INT16. A weight of 0 or 1 yields one frame exactly; the
-// other is not decoded. Normals: interpolated, then normalised. Returns RLPC_BAD_ARGUMENT for
-// frames that do not exist, a weight outside 0 to 1, or RLPC_INT32; otherwise a stream error if
-// a frame cannot be decoded.
+// rounded once; RLPC_FORMAT_FLOAT, _HALF or _INT16. A weight of 0 or 1 yields one frame
+// exactly; the other is not decoded. Normals: interpolated, then normalised. Returns
+// RLPC_BAD_ARGUMENT for frames that do not exist, a weight outside 0 to 1, or
+// RLPC_FORMAT_INT32; otherwise a stream error if a frame cannot be decoded.
 //
 // rlpc_decoder_bounds then returns the box of the blend. The next frame (rlpc_decoder_next) is
 // undefined until rlpc_decoder_frame or _seek. Time: decodes the frames that the previous call

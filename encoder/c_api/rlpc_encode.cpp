@@ -30,11 +30,11 @@ rlpc_encode_options default_options() {
   const EncoderSettings defaults;
   rlpc_encode_options options{};
   options.struct_size = sizeof options;
-  options.profile = RLPC_MAIN;
-  options.preset = RLPC_MEDIUM;
+  options.profile = RLPC_PROFILE_MAIN;
+  options.preset = RLPC_PRESET_MEDIUM;
   options.target = RLPC_TARGET_KG;
   options.target_value = defaults.target.value;
-  options.hash_mode = RLPC_HASH_GOF;
+  options.hash_mode = RLPC_HASH_MODE_GOF;
   options.least_level = 1;
   options.max_memory_bytes = defaults.max_memory_bytes;
   options.threads = defaults.threads;
@@ -65,26 +65,26 @@ bool add_clips(const rlpc_encode_options& options, std::vector<Clip>& clips) {
 std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
   EncoderSettings settings;
   switch (options.profile) {
-    case RLPC_BASELINE:
+    case RLPC_PROFILE_BASELINE:
       settings.profile = Profile::kBaseline;
       break;
-    case RLPC_MAIN:
+    case RLPC_PROFILE_MAIN:
       settings.profile = Profile::kMain;
       break;
-    case RLPC_HIGH:
+    case RLPC_PROFILE_HIGH:
       settings.profile = Profile::kHigh;
       break;
     default:
       return std::nullopt;
   }
   switch (options.preset) {
-    case RLPC_FAST:
+    case RLPC_PRESET_FAST:
       settings.preset = Preset::kFast;
       break;
-    case RLPC_MEDIUM:
+    case RLPC_PRESET_MEDIUM:
       settings.preset = Preset::kMedium;
       break;
-    case RLPC_SLOW:
+    case RLPC_PRESET_SLOW:
       settings.preset = Preset::kSlow;
       break;
     default:
@@ -107,19 +107,19 @@ std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
       return std::nullopt;
   }
   switch (options.hash_mode) {
-    case RLPC_HASH_NONE:
+    case RLPC_HASH_MODE_NONE:
       settings.hash_mode = HashMode::kNone;
       break;
-    case RLPC_HASH_GOF:
+    case RLPC_HASH_MODE_GOF:
       settings.hash_mode = HashMode::kGof;
       break;
-    case RLPC_HASH_FRAME:
+    case RLPC_HASH_MODE_FRAME:
       settings.hash_mode = HashMode::kFrame;
       break;
     default:
       return std::nullopt;
   }
-  if (options.gof_kind > RLPC_KIND_FRAMES || options.low_delay > 1) return std::nullopt;
+  if (options.gof_kind > RLPC_GOF_KIND_INTER || options.low_delay > 1) return std::nullopt;
   settings.kinds = static_cast<KindChoice>(options.gof_kind);
   settings.low_delay = options.low_delay != 0;
   settings.target.value = options.target_value;

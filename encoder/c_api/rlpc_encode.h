@@ -58,12 +58,27 @@ typedef struct rlpc_frame_format {
   float box_max[3];
 } rlpc_frame_format;
 
-// Profile of the stream. RLPC_HIGH is version 1.2, which is not released: its streams may
-// change.
-typedef enum rlpc_profile { RLPC_BASELINE = 0, RLPC_MAIN = 1, RLPC_HIGH = 2 } rlpc_profile;
+// Profile of the stream. RLPC_PROFILE_HIGH is version 1.2, which is not released: its streams
+// may change.
+typedef enum rlpc_profile {
+  RLPC_PROFILE_BASELINE = 0,
+  RLPC_PROFILE_MAIN = 1,
+  RLPC_PROFILE_HIGH = 2,
+  // Names of versions before 1.2.
+  RLPC_BASELINE = RLPC_PROFILE_BASELINE,
+  RLPC_MAIN = RLPC_PROFILE_MAIN,
+} rlpc_profile;
 
 // Search effort; does not affect decoders.
-typedef enum rlpc_preset { RLPC_FAST = 0, RLPC_MEDIUM = 1, RLPC_SLOW = 2 } rlpc_preset;
+typedef enum rlpc_preset {
+  RLPC_PRESET_FAST = 0,
+  RLPC_PRESET_MEDIUM = 1,
+  RLPC_PRESET_SLOW = 2,
+  // Names of versions before 1.2.
+  RLPC_FAST = RLPC_PRESET_FAST,
+  RLPC_MEDIUM = RLPC_PRESET_MEDIUM,
+  RLPC_SLOW = RLPC_PRESET_SLOW,
+} rlpc_preset;
 
 // Error or rate that the encoder aims for.
 typedef enum rlpc_target {
@@ -74,27 +89,31 @@ typedef enum rlpc_target {
   RLPC_TARGET_LOSSLESS = 4,
 } rlpc_target;
 
-// Kind of GOFs. RLPC_KIND_AUTO: for each GOF, the cheapest that the profile has;
-// RLPC_KIND_BONES: skinned GOFs, Main and High; RLPC_KIND_FRAMES: inter GOFs, High.
+// Kind of GOFs. RLPC_GOF_KIND_AUTO: for each GOF, the cheapest that the profile has;
+// RLPC_GOF_KIND_SKINNED: skinned GOFs, Main and High; RLPC_GOF_KIND_INTER: inter GOFs, High.
 typedef enum rlpc_gof_kind {
-  RLPC_KIND_AUTO = 0,
-  RLPC_KIND_CLUSTERS = 1,
-  RLPC_KIND_BONES = 2,
-  RLPC_KIND_FRAMES = 3,
+  RLPC_GOF_KIND_AUTO = 0,
+  RLPC_GOF_KIND_CLUSTER = 1,
+  RLPC_GOF_KIND_SKINNED = 2,
+  RLPC_GOF_KIND_INTER = 3,
 } rlpc_gof_kind;
 
 // Hashes of decoded positions in the stream: none, one per GOF, one per frame.
 typedef enum rlpc_hash_mode {
-  RLPC_HASH_NONE = 0,
-  RLPC_HASH_GOF = 1,
-  RLPC_HASH_FRAME = 2,
+  RLPC_HASH_MODE_NONE = 0,
+  RLPC_HASH_MODE_GOF = 1,
+  RLPC_HASH_MODE_FRAME = 2,
+  // Names of versions before 1.2.
+  RLPC_HASH_NONE = RLPC_HASH_MODE_NONE,
+  RLPC_HASH_GOF = RLPC_HASH_MODE_GOF,
+  RLPC_HASH_FRAME = RLPC_HASH_MODE_FRAME,
 } rlpc_hash_mode;
 
 // Options of the encoder. rlpc_encode_options_init sets the defaults.
 typedef struct rlpc_encode_options {
   size_t struct_size;  // rlpc_encode_options_init sets it
-  uint32_t profile;    // default RLPC_MAIN
-  uint32_t preset;     // default RLPC_MEDIUM
+  uint32_t profile;    // default RLPC_PROFILE_MAIN
+  uint32_t preset;     // default RLPC_PRESET_MEDIUM
   // rlpc_target, default RLPC_TARGET_KG; approached from below, to 2 % (High: 4 %) if possible.
   uint32_t target;
   double target_value;  // default 0.1; above zero and finite
@@ -104,7 +123,7 @@ typedef struct rlpc_encode_options {
   // chosen.
   uint32_t components;
   uint32_t keep_order;   // 1: decoders restore the vertex order of the input; 0: they do not
-  uint32_t hash_mode;    // default RLPC_HASH_GOF
+  uint32_t hash_mode;    // default RLPC_HASH_MODE_GOF
   uint32_t least_level;  // lowest level that the stream may declare, 1 to 4; default 1
   // JSON text for the metadata of the stream, not validated, up to 1 MiB; null: none. Copied.
   const char* metadata;
@@ -122,7 +141,7 @@ typedef struct rlpc_encode_options {
   // High profile: maximum number of frames that are held and encoded together, but at least one
   // GOF; 0: as many as can share a shared rig, up to 2^23 positions.
   uint32_t max_held_frames;
-  uint32_t gof_kind;  // default RLPC_KIND_AUTO
+  uint32_t gof_kind;  // default RLPC_GOF_KIND_AUTO
   // High profile, 1: each frame is coded when it is added, in inter GOFs; a KG error is then
   // met approximately. Default 0. Not with RLPC_TARGET_BPVF.
   uint32_t low_delay;

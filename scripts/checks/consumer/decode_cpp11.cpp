@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   rlpc_frame_output_init(&output, sizeof output);
   output.positions.data = xyz.data();
   output.positions.num_bytes = xyz.size() * sizeof(float);
-  output.positions.format = RLPC_FLOAT;
+  output.positions.format = RLPC_FORMAT_FLOAT;
   while (status == RLPC_OK) {
     status = rlpc_decoder_next(decoder.get(), &output);
     if (status != RLPC_OK) break;

@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
   output.positions.data = &vertices->position;
   output.normals.data = &vertices->normal;
   output.positions.stride = output.normals.stride = sizeof *vertices;
-  output.positions.format = output.normals.format = RLPC_FLOAT;
+  output.positions.format = output.normals.format = RLPC_FORMAT_FLOAT;
   output.positions.num_bytes = sizeof *vertices * (size_t)num_drawn;
   output.normals.num_bytes = output.positions.num_bytes - offsetof(vertex, normal);
   const uint32_t frame = (uint32_t)strtoul(argv[2], NULL, 10);

@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   }
   rlpc_encode_options options;
   rlpc_encode_options_init(&options, sizeof options);
-  options.preset = RLPC_FAST;
+  options.preset = RLPC_PRESET_FAST;
   options.target_value = 0.2;  // KG error in per cent
   options.gof_frames = 32;
 

@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
   rlpc_frame_output_init(&output, sizeof output);
   output.positions.data = xyz;
   output.positions.num_bytes = info.num_vertices * 3 * sizeof *xyz;
-  output.positions.format = RLPC_FLOAT;
+  output.positions.format = RLPC_FORMAT_FLOAT;
 
   int ok = xyz != NULL;
   for (uint32_t f = 0; ok && f < info.num_frames; ++f) ok = show(f);

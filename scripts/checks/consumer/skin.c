@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
   rlpc_frame_output_init(&output, sizeof output);
   output.positions.data = xyz;
   output.positions.num_bytes = 3 * n * sizeof *xyz;
-  output.positions.format = RLPC_FLOAT;
+  output.positions.format = RLPC_FORMAT_FLOAT;
   if (xyz == NULL || s.bones == NULL || s.weights == NULL || s.rest == NULL)
     status = RLPC_OUT_OF_MEMORY;
   if (status == RLPC_OK && info.num_frames > 1) status = show_between(decoder, &output);

@@ -26,12 +26,12 @@ static int decode(FILE* out) {
   output.positions.data = vertices->position;
   output.positions.num_bytes = vertex_bytes;
   output.positions.stride = sizeof(vertex);
-  output.positions.format = RLPC_INT16;
+  output.positions.format = RLPC_FORMAT_INT16;
   output.normals.data = vertices->normal;
   output.normals.num_bytes = vertex_bytes - offsetof(vertex, normal);
   output.normals.stride = sizeof(vertex);
-  output.normals.format = RLPC_INT8;
-  output.normal_weight = RLPC_BY_ANGLE;
+  output.normals.format = RLPC_FORMAT_INT8;
+  output.normal_weight = RLPC_NORMAL_WEIGHT_ANGLE;
 
   double scale[3], offset[3];  // for the vertex shader: coordinate = value * scale + offset
   float least[3], most[3];
