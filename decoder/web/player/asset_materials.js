@@ -1,14 +1,14 @@
-// Colours, emission and their textures, and normal maps, from the asset of a stream: a GLB without
-// geometry. It is from anybody: what does not fit is left out, and nothing is fetched.
+// Reads colours, emission, their textures and normal maps from the asset of a stream: a GLB without
+// geometry. The asset is untrusted: unsupported parts are left out, and nothing is fetched.
 
 const kMagic = 0x46546c67; // "glTF"
 const kJsonChunk = 0x4e4f534a;
 const kHeaderBytes = 12;
 const kChunkBytes = 8;
-const kMostPixels = 4096; // of a side of a texture; larger ones are scaled down
+const kMostPixels = 4096; // per side of a texture; larger ones are scaled down
 const kWhite = [1, 1, 1, 1];
 
-/** The JSON and the bytes of a GLB. */
+/** Returns the JSON and the bytes of a GLB. */
 function chunksOf(bytes) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   if (bytes.length < kHeaderBytes + kChunkBytes || view.getUint32(0, true) !== kMagic) {
@@ -32,7 +32,7 @@ function numbers(value, count, usual) {
   return fits ? value : usual;
 }
 
-/** Rows of a matrix from texture coordinates to those of the image (KHR_texture_transform). */
+/** Returns rows of a matrix from texture coordinates to those of the image (KHR_texture_transform). */
 function rowsOf({ offset, rotation, scale } = {}) {
   const [x, y] = numbers(offset, 2, [0, 0]);
   const [u, v] = numbers(scale, 2, [1, 1]);
@@ -64,8 +64,8 @@ async function pictureOf(blob) {
   }
 }
 
-/** Materials for Viewer.setMaterials(), and what is wrong with them: { materials, problems }.
- * Throws if the asset is not one. */
+/** Reads materials for Viewer.setMaterials(), and their problems: { materials, problems }. Throws if
+ * the asset is not a GLB. */
 export async function readMaterials(bytes) {
   const glb = chunksOf(bytes);
   const { materials = [], textures = [], images = [], samplers = [] } = glb.json;
