@@ -43,7 +43,7 @@ typedef enum rlpc_value_kind {
 } rlpc_value_kind;
 
 typedef struct rlpc_attribute {
-  size_t struct_size;  // as passed to rlpc_decoder_attribute
+  size_t struct_size;  // size passed to rlpc_decoder_attribute
   // "uv0", "normal", "colour0", "material", "part" and others (Table F-1). Valid until the
   // handle is closed; ends at the first zero byte.
   const char* name;

@@ -102,7 +102,7 @@ typedef struct rlpc_decode_options {
 } rlpc_decode_options;
 
 typedef struct rlpc_stream_info {
-  size_t struct_size;  // as passed to rlpc_decoder_info
+  size_t struct_size;  // size passed to rlpc_decoder_info
   uint32_t profile;    // 0: Baseline, 1: Main, 2: High
   uint32_t level;
   uint32_t num_vertices;
@@ -132,9 +132,9 @@ typedef struct rlpc_gof {
 
 // Estimates of memory, as compared with max_memory_bytes: upper bounds of what is allocated.
 typedef struct rlpc_memory {
-  size_t struct_size;     // as passed to rlpc_decoder_memory
-  uint64_t stream_bytes;  // as long as the stream is open: connectivity and data derived from
-                          // it, four frames per thread, metadata and clips
+  size_t struct_size;     // size passed to rlpc_decoder_memory
+  uint64_t stream_bytes;  // the open stream: connectivity and data derived from it, four
+                          // frames per thread, metadata and clips
   uint64_t gof_bytes;     // the current GOF, without shared rigs
   uint64_t cached_bytes;  // cached GOFs with their shared rigs
 } rlpc_memory;

@@ -10,7 +10,7 @@ namespace rlpc {
 namespace {
 
 constexpr const char* kExamples = R"(OUT is one of
-  clip.pc2, clip.mdd      point cache, with clip.obj beside it for the triangles
+  clip.pc2, clip.mdd      point cache; clip.obj next to it has the triangles
   clip.glb                glTF: bones, or a morph target for each frame (--as)
   out/frame_%04d.obj      one OBJ (or PLY) file per frame; also ####, out/
   clip.rlpd               exact integer positions, for conformance
@@ -24,44 +24,42 @@ Examples
   rlpcdec walk.rlpc --html walk.html)";
 
 constexpr const char* kDetails =
-    R"(A folder OUT gets OBJ files, with --format ply PLY files. With -o -, the format
-is needed: rlpd or glb; of a single frame also obj or ply. From an open-ended
-stream (rlpcenc --low-delay), each frame is written as soon as it has arrived;
-with --format pc2 -o -, without a mesh and with a frame count of 0.
+    R"(A folder OUT gets OBJ files or, with --format ply, PLY files. -o - needs a
+format: rlpd or glb or, for a single frame, obj or ply. Frames of an open-ended
+stream (rlpcenc --low-delay) are written as soon as they arrive; --format pc2
+-o - then writes no mesh, and a frame count of 0.
 
 OBJ files hold texture coordinates, normals, colours of vertices, materials and
-parts; a .mtl file and images beside them have the materials. PLY files hold
-texture coordinates, normals and colours, of vertices only: vertices become
-several, one for each distinct combination of these. Normals are those of each
-frame. With --coarse, there is none of this.
+parts; a .mtl file and images next to them hold the materials. PLY files hold
+texture coordinates, normals and colours per vertex: vertices are repeated for
+each distinct combination of these. Normals are those of each frame. Coarse
+meshes (--coarse) have no attributes.
 
 --html writes a page that contains the stream and plays it in a browser, without
-a network. scripts/player builds the player that it needs.
+a network. It needs the player that scripts/player builds.
 
-Fewer components or layers are faster to decode (not Baseline). The result is
-that of decoding after rlpcinfo --extract components=K,layers=L,temporal=N.
+Fewer components or layers are faster to decode (not Baseline). The result
+equals decoding after rlpcinfo --extract components=K,layers=L,temporal=N.
 Cluster GOFs have no slices: they are decoded whole.
 
-In a .glb file, each clip is an animation. --as skin makes the bones of the
-stream, or its clusters, joints of a skin; what these leave becomes morph
-targets: enough for the file to differ from the stream by no more than the
-stream's own error, which rlpcdec estimates from its quantiser steps; and more,
-down to half of that, while each lowers the size of the file times its error
-(the stream's included). rlpcdec reports the difference. A vertex keeps its four
-largest influences. Where groups of frames have bones of their own, those of
-most frames are fitted to the others. A stream whose frames are predicted from
-frames has no bones.
---as auto writes a morph target for each frame instead where there are no bones;
-and, as long as these are at most the 2,000 that viewers hold, where they take
-fewer bytes, or where bones would leave more than the stream's own error: N
-times that error is worth 4 * N times the bytes. Otherwise it writes bones. The
-decoded frames are exact with --as morph only; all frames of a skin are held in
-memory.
+In a .glb file, each clip is an animation. --as skin turns the bones of the
+stream, or its clusters, into joints of a skin, and the residual into morph
+targets: enough that the file differs from the stream by at most the error of
+the stream, which rlpcdec estimates from its quantiser steps; more are added,
+down to half that error, while each one reduces file size * total error. rlpcdec
+reports the difference. A vertex keeps its four largest influences. If groups of
+frames have different bones, the bones of most frames are fitted to the others.
+Streams of inter GOFs have no bones.
+--as auto writes a morph target for each frame instead if the stream has no
+bones; or, up to the 2,000 targets that viewers support, if they take fewer
+bytes, or if bones would leave more than the error of the stream: an error N
+times larger justifies up to 4 * N times the bytes. Only --as morph writes the
+decoded frames exactly. All frames of a skin are held in memory.
 
-With --coarse, vertex layers are removed from the mesh, the finest first: each
-vertex leaves a hole, which larger triangles fill. The other vertices keep their
-positions. Slices that are not needed for these are not decoded (Main and High
-profiles). rlpcinfo --coarse lists the coarse meshes of a stream.
+--coarse removes vertex layers from the mesh, the finest first: larger triangles
+fill the hole of each vertex. The other vertices keep their positions. Slices
+that these do not need are not decoded (Main and High profiles). rlpcinfo
+--coarse lists the coarse meshes of a stream.
 
 For the conformance judge (conformance/VALIDATE.md)
   rlpcdec --rlpc-conformance
@@ -136,9 +134,10 @@ void add_format_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs)
       ->excludes(outputs.verify)
       ->excludes(outputs.page)
       ->group(kOutput);
-  app.add_flag("--conceal", o.conceals,
-               "After damage, go on with the next intact group of frames, and leave damaged "
-               "attributes out; the last frame before stands for those that are lost")
+  app.add_flag(
+         "--conceal", o.conceals,
+         "After damage, resume with the next intact group of frames, and leave out damaged "
+         "attributes; lost frames repeat the last good one")
       ->excludes(outputs.page)
       ->group(kOutput);
   app.add_flag("--no-hashes", o.no_hashes, "Do not verify the hashes of the stream")
@@ -164,16 +163,16 @@ void add_gltf_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs) {
       {"auto", GltfMotion::kAuto}, {"skin", GltfMotion::kSkin}, {"morph", GltfMotion::kMorph}};
   app.add_option_function<std::string>(
          "--as", [&o](const std::string& word) { o.motion = kMotions.at(word); },
-         "skin: bones, and morph targets for what they leave; morph: each frame exactly, as a "
-         "morph target; auto (default): bones, unless frames are smaller, or bones not near "
-         "enough")
+         "skin: bones, and morph targets for the residual; morph: each frame exactly, as a "
+         "morph target; auto (default): bones, unless frames are smaller or bones too "
+         "inaccurate")
       ->check(CLI::IsMember(kMotions).description(""))
       ->option_text("WORD")
       ->excludes(outputs.verify)
       ->excludes(outputs.page)
       ->group(kGltf);
   app.add_option("--max-targets", o.max_targets,
-                 "Morph targets beside bones, at most (default: 256); 0 for bones alone")
+                 "Maximum number of morph targets with bones (default: 256); 0: bones alone")
       ->check(CLI::Range(0U, 65535U))
       ->option_text("N")
       ->excludes(outputs.verify)
@@ -183,7 +182,7 @@ void add_gltf_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs) {
 
 void add_limit_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs) {
   app.add_option("--max-components", o.decoder.cut.max_components,
-                 "Of each skinned GOF, only the leading component groups with at "
+                 "Only the leading component groups of each skinned GOF with at "
                  "most K trajectories in total")
       ->check(CLI::Range(0U, SliceCut::kAll - 1))
       ->option_text("K")
@@ -206,9 +205,10 @@ void add_limit_options(CLI::App& app, DecodeCommand& o, const Outputs& outputs) 
       ->excludes(outputs.page)
       ->group(kLess);
 
-  app.add_option("--coarse", o.decoder.coarse_layers,
-                 "Decode a mesh with only the coarsest L vertex layers, and triangles between "
-                 "them: 1 for the fewest vertices; the whole mesh if it has no more layers")
+  app.add_option(
+         "--coarse", o.decoder.coarse_layers,
+         "Decode a mesh of only the coarsest L vertex layers and triangles between them: "
+         "1 for the fewest vertices; the whole mesh if it has no more layers")
       ->check(CLI::Range(1U, SliceCut::kAll - 1))
       ->option_text("L")
       ->excludes(outputs.verify)

@@ -41,15 +41,15 @@ constexpr const char* kExamples = R"(Examples
 
 constexpr const char* kDetails =
     R"(--extract writes the stream without the slices of finer detail (not Baseline),
-without re-encoding. Of each skinned GOF and shared rig, it keeps the leading
-component groups with at most K trajectories in total (0: only bones and rest
+without re-encoding. It keeps the leading component groups of each skinned GOF
+and shared rig with at most K trajectories in total (0: only bones and rest
 shape), and the coarsest layer groups with at most L vertex layers in total
 (always at least the first).
-Of the temporal layers of a GOF, it keeps the first N; all frames are left.
+It keeps the first N temporal layers of a GOF, and all its frames.
 Cluster GOFs have no slices: they are kept whole. --gofs shows possible cuts.
 
-Pictures show the mesh from two sides, with the cluster or bone of each vertex
-in colour, and with its vertex layer. Beyond 10000 triangles (2000 in a page),
+Pictures show the mesh from two sides, coloured by the cluster, bone or patch of
+each vertex, and by its vertex layer. Beyond 10000 triangles (2000 in a page),
 they show a coarse mesh.
 
 --trace prints bit position, name and value of every syntax element.
@@ -232,11 +232,10 @@ CLI::Option* add_options(CLI::App& app, Options& o) {
                                   "of vertex layers, to this folder")
                        ->option_text("FOLDER")
                        ->group(report);
-  auto* frame =
-      app.add_option("--frame", o.frame,
-                     "The frame in pictures, with its GOF, counted from 0 (default: 0)")
-          ->option_text("F")
-          ->group(report);
+  auto* frame = app.add_option("--frame", o.frame,
+                               "Frame in pictures, with its GOF, counted from 0 (default: 0)")
+                    ->option_text("F")
+                    ->group(report);
   auto* trace =
       app.add_flag("--trace", o.trace, "List every syntax element instead")->group(report);
   app.add_option(
