@@ -36,7 +36,7 @@ export class HttpSource {
       await response.body?.cancel();
       return this.openWhole(await this.request(undefined, signal));
     }
-    if (response.status === 416) { // no byte is there
+    if (response.status === 416) { // the file is empty
       this.size = 0;
       return undefined;
     }

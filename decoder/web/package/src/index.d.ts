@@ -190,7 +190,7 @@ export class RlpcDecoder {
   /** Index of each vertex in the whole mesh; only with `coarseLayers`. */
   readonly coarseVertices?: Uint32Array;
   readonly clips: readonly Clip[];
-  /** What the encoder noted, from JSON; null if it noted nothing. */
+  /** Metadata of the encoder, from JSON; null without. */
   readonly metadata: unknown;
   /** Box that holds all frames, possibly larger than their extent. */
   readonly bounds: Bounds;
@@ -256,7 +256,7 @@ export class Playback<F = Frame> {
     request: (index: number, signal: AbortSignal) => Promise<F>;
     /** Returns a frame that is already available, which is then not requested. */
     peek?: (index: number) => F | undefined;
-    /** Takes frames that are not wanted any more. */
+    /** Takes frames that are no longer needed. */
     discard?: (frame: F) => void;
     failed?: (error: unknown, index: number) => void;
   });

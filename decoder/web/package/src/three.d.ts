@@ -105,9 +105,9 @@ export class RLPCMesh extends Mesh<BufferGeometry, Material | Material[], RLPCMe
   /** Resolves once the state set by actions of an AnimationMixer or by `time` is shown. Rejects with
    * an AbortError after dispose(). */
   ready(): Promise<void>;
-  /** A new AnimationClip of a clip, or of the whole sequence, for actions of this mesh and its clones:
-   * to blend a clip with itself. To be kept and used again: it ends with the last mesh of the
-   * stream. */
+  /** Makes an AnimationClip of a clip, or of the whole sequence, for actions of this mesh and its
+   * clones: to blend a clip with itself. Keep and reuse it: it lives until the last mesh of the
+   * stream is disposed of. */
   makeAnimation(clip: string | Clip | null): AnimationClip;
 
   /** Adds a coarser mesh of the same stream, for this mesh and its clones, with texture coordinates
