@@ -207,7 +207,7 @@ std::optional<OutputError> OutputFile::commit() {
   const HoldInterrupts hold;
   std::error_code ec;
   fs::rename(temporary_, target_, ec);
-  if (ec) return output_error(path_, "give the finished file its name", ec.value());
+  if (ec) return output_error(path_, "rename the finished file", ec.value());
   remove_unfinished(temporary_);
   temporary_.clear();
   sync_folder_of(target_);

@@ -167,7 +167,7 @@ static void test_normals(void) {
 
 static void test_refusals(void) {
   CHECK(give(&output.positions, RLPC_FORMAT_INT8, 0) == RLPC_BAD_ARGUMENT);
-  CHECK(strstr(rlpc_decoder_error_text(decoder), "positions: they have no format 5") != NULL);
+  CHECK(strstr(rlpc_decoder_error_text(decoder), "positions: unsupported format 5") != NULL);
   CHECK(give(&output.normals, RLPC_FORMAT_INT32, 0) == RLPC_BAD_ARGUMENT);
   CHECK(give(&output.positions, 0, 0) == RLPC_BAD_ARGUMENT);
   CHECK(give(&output.positions, RLPC_FORMAT_FLOAT, 11) == RLPC_BAD_ARGUMENT);

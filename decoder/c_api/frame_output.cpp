@@ -19,7 +19,7 @@ rlpc_status check_channel(rlpc_decoder& handle, const char* name, const rlpc_cha
   if (channel.data == nullptr) return RLPC_OK;
   if (std::find(formats.begin(), formats.end(), channel.format) == formats.end()) {
     return bad_output(
-        handle, std::string(name) + ": they have no format " + std::to_string(channel.format));
+        handle, std::string(name) + ": unsupported format " + std::to_string(channel.format));
   }
   rlpc_channel tight = channel;
   tight.stride = 0;
@@ -47,7 +47,7 @@ rlpc_status check_output(rlpc_decoder& handle, const rlpc_frame_output& output) 
                                                     RLPC_FORMAT_INT16, RLPC_FORMAT_INT8};
   if (output.normal_weight > RLPC_NORMAL_WEIGHT_ANGLE) {
     return bad_output(handle,
-                      "normal_weight: there is no " + std::to_string(output.normal_weight));
+                      "normal_weight: unknown value " + std::to_string(output.normal_weight));
   }
   for (const double scale : output.int16_scale) {
     if (!(scale >= 0 && std::isfinite(scale)))

@@ -84,7 +84,7 @@ rlpc_status rlpc_decoder_attribute(rlpc_decoder* decoder, uint32_t set,
                                    rlpc_attribute* attribute, size_t struct_size) {
   return rlpc::guarded(decoder, [&] {
     if (attribute == nullptr || struct_size < sizeof(std::size_t)) {
-      return rlpc::bad(*decoder, "there is no room for the description");
+      return rlpc::bad(*decoder, "attribute is null, or struct_size too small");
     }
     const rlpc::AttributeSet* const found = rlpc::set_at(*decoder, set);
     if (found == nullptr) return RLPC_BAD_ARGUMENT;

@@ -43,7 +43,7 @@ typedef enum rlpc_value_kind {
 } rlpc_value_kind;
 
 typedef struct rlpc_attribute {
-  size_t struct_size;  // as passed to rlpc_decoder_attribute
+  size_t struct_size;  // size passed to rlpc_decoder_attribute
   // "uv0", "normal", "colour0", "material", "part" and others (Table F-1). Valid until the
   // handle is closed; ends at the first zero byte.
   const char* name;
@@ -89,8 +89,8 @@ RLPC_API rlpc_status rlpc_decoder_attribute_of_corners(struct rlpc_decoder* deco
 // least num_vertices. Time: proportional to n log n for n triangles. Memory: some indices per
 // triangle, until the handle is closed.
 RLPC_API rlpc_status rlpc_decoder_split(struct rlpc_decoder* decoder, uint32_t* num_drawn);
-// Copies the vertex of the stream of each drawn vertex. num_values: num_drawn. Like the
-// functions below, returns RLPC_BAD_ARGUMENT before rlpc_decoder_split.
+// Copies the vertex of the stream of each drawn vertex. num_values: num_drawn. Like the other
+// rlpc_decoder_split_ functions, returns RLPC_BAD_ARGUMENT before rlpc_decoder_split.
 RLPC_API rlpc_status rlpc_decoder_split_vertices(struct rlpc_decoder* decoder,
                                                  uint32_t* vertices, size_t num_values);
 // Copies the triangles, in the order of the stream, as indices of drawn vertices. Parameters

@@ -26,8 +26,7 @@ rlpc_status check_blend(rlpc_decoder& handle, const rlpc_blend& blend,
     return bad_output(handle, "weight: expected a number from 0 to 1");
   }
   if (output.positions.data != nullptr && output.positions.format == RLPC_FORMAT_INT32) {
-    return bad_output(handle,
-                      "positions: between frames, there are no integers (RLPC_FORMAT_INT32)");
+    return bad_output(handle, "positions: blends have no integers (RLPC_FORMAT_INT32)");
   }
   return check_output(handle, output);
 }
@@ -136,11 +135,11 @@ rlpc_status rlpc_decoder_blend(rlpc_decoder* decoder, const rlpc_blend* blend,
   return rlpc::guarded(decoder, [&] {
     rlpc_blend ours{};
     if (blend == nullptr || !rlpc::take_struct(blend, ours)) {
-      return rlpc::bad_output(*decoder, "blend: rlpc_blend_init has not set it");
+      return rlpc::bad_output(*decoder, "blend is not initialised (rlpc_blend_init)");
     }
     rlpc_frame_output wanted{};
     if (output == nullptr || !rlpc::take_struct(output, wanted)) {
-      return rlpc::bad_output(*decoder, "output: rlpc_frame_output_init has not set it");
+      return rlpc::bad_output(*decoder, "output is not initialised (rlpc_frame_output_init)");
     }
     if (const auto status = rlpc::check_blend(*decoder, ours, wanted); status != RLPC_OK) {
       return status;

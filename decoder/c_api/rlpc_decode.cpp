@@ -226,7 +226,7 @@ rlpc_status rlpc_decoder_info(rlpc_decoder* decoder, rlpc_stream_info* info,
                               size_t struct_size) {
   return rlpc::guarded(decoder, [&] {
     if (info == nullptr || struct_size < sizeof(std::size_t)) {
-      return decoder->error.set(RLPC_BAD_ARGUMENT, "there is no room for the description");
+      return decoder->error.set(RLPC_BAD_ARGUMENT, "info is null, or struct_size too small");
     }
     const rlpc::SequenceHeader& h = decoder->decoder->header();
     rlpc_stream_info ours{};

@@ -28,15 +28,15 @@
 // until rlpc_decoder_seek or rlpc_decoder_frame succeeds.
 //
 // Memory: use is bounded by one group of frames (GOF), the shared rigs that it can refer to,
-// one shared rig being replaced, four frames per thread and max_cached_bytes, whatever the
-// length of the stream; and by max_memory_bytes, whatever the stream declares. All output goes
-// to buffers of the caller. The handle is the only object to free, and can itself be placed in
-// memory of the caller (place). The decoder allocates when it opens a stream, for each GOF and
-// shared rig, and for the first frame. Within a GOF, every fourth frame allocates temporary
-// buffers, and the others nothing; several threads and seeking allocate more. Memory comes from
-// rlpc_decode_options.allocator or from C++ operator new. With an allocator, the C and C++
-// runtimes still allocate for files, for starting threads and for error texts, and zlib for
-// metadata and assets.
+// one shared rig being replaced, four frames and max_cached_bytes (more with several threads),
+// whatever the length of the stream; and by max_memory_bytes, whatever the stream declares. All
+// output goes to buffers of the caller. The handle is the only object to free, and can itself
+// be placed in memory of the caller (place). The decoder allocates when it opens a stream, for
+// each GOF and shared rig, and for the first frame. Within a GOF, every fourth frame allocates
+// temporary buffers, and the others nothing; several threads and seeking allocate more. Memory
+// comes from rlpc_decode_options.allocator or from C++ operator new. With an allocator, the C
+// and C++ runtimes still allocate for files, for starting threads and for error texts, and zlib
+// for metadata and assets.
 #pragma once
 
 #include <stddef.h>
@@ -102,7 +102,7 @@ typedef struct rlpc_decode_options {
 } rlpc_decode_options;
 
 typedef struct rlpc_stream_info {
-  size_t struct_size;  // as passed to rlpc_decoder_info
+  size_t struct_size;  // size passed to rlpc_decoder_info
   uint32_t profile;    // 0: Baseline, 1: Main, 2: High
   uint32_t level;
   uint32_t num_vertices;
@@ -132,9 +132,9 @@ typedef struct rlpc_gof {
 
 // Estimates of memory, as compared with max_memory_bytes: upper bounds of what is allocated.
 typedef struct rlpc_memory {
-  size_t struct_size;     // as passed to rlpc_decoder_memory
-  uint64_t stream_bytes;  // as long as the stream is open: connectivity and data derived from
-                          // it, four frames per thread, metadata and clips
+  size_t struct_size;     // size passed to rlpc_decoder_memory
+  uint64_t stream_bytes;  // the open stream: connectivity and data derived from it, four
+                          // frames per thread, metadata and clips
   uint64_t gof_bytes;     // the current GOF, without shared rigs
   uint64_t cached_bytes;  // cached GOFs with their shared rigs
 } rlpc_memory;

@@ -18,7 +18,7 @@ rlpc_status give_frame(rlpc_decoder& handle, const rlpc_frame_output* wanted,
                        const Decode& decode) {
   rlpc_frame_output output{};
   if (wanted == nullptr || !take_struct(wanted, output)) {
-    return bad_output(handle, "output: rlpc_frame_output_init has not set it");
+    return bad_output(handle, "output is not initialised (rlpc_frame_output_init)");
   }
   if (const auto status = check_output(handle, output); status != RLPC_OK) return status;
   const SequenceHeader& header = handle.decoder->header();
@@ -172,7 +172,7 @@ rlpc_status rlpc_decoder_memory(rlpc_decoder* decoder, rlpc_memory* memory,
                                 size_t struct_size) {
   return rlpc::guarded(decoder, [&] {
     if (memory == nullptr || struct_size < sizeof(std::size_t)) {
-      return decoder->error.set(RLPC_BAD_ARGUMENT, "there is no room for the description");
+      return decoder->error.set(RLPC_BAD_ARGUMENT, "memory is null, or struct_size too small");
     }
     const rlpc::DecoderMemory now = decoder->decoder->memory();
     rlpc_memory ours{};

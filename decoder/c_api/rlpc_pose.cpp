@@ -121,7 +121,7 @@ rlpc_status bad_pose(rlpc_decoder& handle, const std::string& what) {
 // Returns RLPC_OK if the pose has bones, and slots are in range.
 rlpc_status check_pose(rlpc_decoder& handle, std::uint32_t slots = 1) {
   constexpr std::uint32_t kMostSlots = 65536;
-  if (!handle.pose) return bad_pose(handle, "there are no bones: see rlpc_decoder_pose");
+  if (!handle.pose) return bad_pose(handle, "the pose has no bones: see rlpc_decoder_pose");
   if (slots >= 1 && slots <= kMostSlots) return RLPC_OK;
   return bad_pose(handle, "slots: " + std::to_string(slots) + " is not in the range of 1 to " +
                               std::to_string(kMostSlots));

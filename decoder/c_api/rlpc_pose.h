@@ -41,7 +41,7 @@ typedef struct rlpc_blend {
 } rlpc_blend;
 
 typedef struct rlpc_pose {
-  size_t struct_size;       // as passed to rlpc_decoder_pose
+  size_t struct_size;       // size passed to rlpc_decoder_pose
   uint32_t num_bones;       // 0: no bones move this frame
   uint32_t max_influences;  // largest number of bones that move one vertex
   // Number of the skeleton, from 1: that of the previous pose if bones, influences and bind
@@ -50,7 +50,7 @@ typedef struct rlpc_pose {
 } rlpc_pose;
 
 typedef struct rlpc_bone {
-  size_t struct_size;  // as passed to rlpc_decoder_bone
+  size_t struct_size;  // size passed to rlpc_decoder_bone
   int32_t parent;      // index of an earlier bone; -1: none
   float bind[16];      // place of the bone in the rest shape: a matrix in column-major order
 } rlpc_bone;

@@ -1,4 +1,4 @@
-// Values under the pointer, in every chart; a line at the frame that a viewer shows.
+// Shows values under the pointer, in every chart, and a line at the frame that a viewer shows.
 "use strict";
 for (const figure of document.querySelectorAll("figure[data-chart]")) {
   const chart = JSON.parse(figure.dataset.chart);
@@ -22,7 +22,7 @@ for (const figure of document.querySelectorAll("figure[data-chart]")) {
   tip.hidden = true;
   figure.append(tip);
 
-  // [index of the values, first frame, last frame] at a place of the pointer; or null
+  // Returns [index of the values, first frame, last frame] under the pointer, or null.
   const found = (event) => {
     const box = svg.getBoundingClientRect();
     const x = (event.clientX - box.left) / box.width * svg.viewBox.baseVal.width;

@@ -1,4 +1,4 @@
-// The animation of a MeshView (mesh_view.h) within a page, and the controls below it.
+// Animation of a MeshView (mesh_view.h) within a page, and the controls below it.
 import { Camera, Viewer, kRampCss } from "../web/viewer/viewer.js";
 
 const $ = (id) => document.getElementById(id);
@@ -20,9 +20,10 @@ class MeshView {
     this.playing = false;
   }
 
-  // ---- What is drawn ----
+  // ---- Drawing ----
 
-  /** From the centre of all frames: far from the origin, 32 bits would not tell them apart. */
+  /** Returns coordinates relative to the centre of all frames: far from the origin, 32 bits would not
+   * resolve them. */
   coordinatesOf(which, frame) {
     const { vertices, step } = this.info;
     const levels = this.levels[which].subarray(3 * vertices * frame, 3 * vertices * (frame + 1));
@@ -44,7 +45,7 @@ class MeshView {
     return box;
   }
 
-  /** Of triangles, as long as twice their area. */
+  /** Returns normals of triangles, as long as twice their area. */
   triangleNormals(xyz) {
     const normals = new Float32Array(this.triangles.length);
     for (let t = 0; t < normals.length; t += 3) {
@@ -67,7 +68,7 @@ class MeshView {
     return normals;
   }
 
-  /** Whether many corners are sharp, so that shading across them would look wrong. */
+  /** Returns whether many corners are sharp, so that smooth shading would look wrong. */
   isAngular(xyz) {
     const smooth = this.vertexNormals(xyz), flat = this.triangleNormals(xyz);
     let sharp = 0;
@@ -94,7 +95,7 @@ class MeshView {
     return Uint32Array.from(list);
   }
 
-  // ---- Viewers: one for each of the meshes that are shown ----
+  // ---- Viewers: one per mesh shown ----
 
   shown() {
     const { value } = $("show");
@@ -127,7 +128,7 @@ class MeshView {
 
   showFrame(to) {
     this.frame = Math.max(0, Math.min(this.info.frames - 1, to));
-    const box = this.boxOf(this.coordinatesOf("decoded", this.frame)); // of both: one camera
+    const box = this.boxOf(this.coordinatesOf("decoded", this.frame)); // shared: one camera
     for (const which of this.shown()) {
       const coordinates = this.coordinatesOf(which, this.frame);
       const normals = $("flat").checked ? undefined : this.vertexNormals(coordinates);
@@ -141,7 +142,7 @@ class MeshView {
     this.redraw();
   }
 
-  /** What the controls say. */
+  /** Applies the settings of the controls. */
   applySettings() {
     const top = this.info[$("top").value];
     const paints = $("colour").value === "error";
@@ -182,7 +183,7 @@ class MeshView {
     return this.info.frame_rate / this.info.stride * Number($("speed").value) / 1000;
   }
 
-  /** began: when frame 0 would have been shown, at this speed. */
+  /** Keeps the time. began: when frame 0 would have been shown, at this speed. */
   keepTime() {
     this.began = performance.now() - this.frame / this.rate();
   }
@@ -224,7 +225,7 @@ class MeshView {
     };
     $("flat").onchange = () => {
       this.applySettings();
-      this.showFrame(this.frame); // with normals, or without
+      this.showFrame(this.frame); // normals may have changed
     };
     for (const id of ["colour", "top", "wires"]) $(id).onchange = () => this.applySettings();
     document.addEventListener("go-to-frame",
@@ -240,7 +241,7 @@ class MeshView {
     new ResizeObserver(() => this.resize()).observe($("stage"));
   }
 
-  /** A link may name frame and settings: #frame=12&show=both&edges */
+  /** Starts with the frame and settings of a link: #frame=12&show=both&edges */
   start() {
     const asked = new URLSearchParams(location.hash.slice(1));
     for (const id of ["show", "colour", "top", "up"]) {
@@ -257,8 +258,8 @@ class MeshView {
     this.describe();
   }
 
-  /** For tests: the frame, and the box of what is drawn of the mesh, in shares of the canvas from
-   * the upper left. */
+  /** Returns, for tests, the frame and the box of the drawn mesh, as parts of the canvas from the
+   * upper left. */
   describe() {
     const { gl, canvas } = this.viewerOf(this.shown()[0]);
     const { width, height } = canvas;

@@ -24,7 +24,7 @@ class BitReader {
                      Trace* trace = nullptr)
       : bytes_(bytes), first_bit_(first_bit), trace_(trace) {}
 
-  // u(n), 1 <= n <= 32; `rule` is the id of the rule that gives the range.
+  // u(n), 1 <= n <= 32. rule: id of the rule that states the range.
   std::uint32_t u(int n, const char* element, Range range, const char* rule);
   std::uint32_t u(int n, const char* element);
   bool flag(const char* element) { return u(1, element) != 0; }

@@ -8,7 +8,7 @@
 
 namespace rlpc {
 
-// Only for machines with AVX2.
+// Kernels for machines with AVX2 only.
 std::int64_t predict_offset_avx2(const FilterState& filter, const std::int32_t* offsets);
 void adapt_avx2(const FilterState& filter, const std::int32_t* offsets, std::int64_t error);
 void adapt_to_frame_avx2(const FilterState& filter, const std::int32_t* offsets,

@@ -66,7 +66,7 @@ class Prefetch {
     bool is_tried = false;
     std::optional<ParsedRig> parsed;
   };
-  using Slots = std::array<std::shared_ptr<RigAhead>, kMaxRigs>;  // by rig_idx
+  using Slots = std::array<std::shared_ptr<RigAhead>, kMaxRigs>;  // [rig_idx]
 
   struct Ahead {
     RawAccessUnit coded;

@@ -1,4 +1,4 @@
-// 6.12.4: positions in an order of their own, parsing side.
+// 6.12.4: positions in the rest order, parsing side.
 #pragma once
 
 #include <cstdint>

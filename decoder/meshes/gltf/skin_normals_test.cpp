@@ -89,7 +89,8 @@ struct Skinned {
   GltfLook look = surface.look();
   SkinInfluences influences = written_influences(b.skeleton, kShortWhole);
   std::vector<JointMaps> maps = b.maps();
-  std::vector<float> rest = best_rest(influences, maps, b.frames);  // rest shape before tests change frames
+  std::vector<float> rest =
+      best_rest(influences, maps, b.frames);  // shape of the initial frames
 
   SkinNormals normals(std::size_t max_targets, std::uint64_t max_bytes = 1U << 20) const {
     const NormalVertices vertices = normal_vertices(

@@ -36,7 +36,7 @@ split into one for each distinct combination of these. Normals are computed for
 each frame. With --coarse, none of these are written.
 
 --html writes a page that contains the stream and plays it in a browser, without
-a network. scripts/player builds the player that it needs.
+a network. It needs the player that scripts/player builds.
 
 Fewer components or layers are faster to decode (not Baseline). The result is
 the same as after rlpcinfo --extract components=K,layers=L,temporal=N. Cluster

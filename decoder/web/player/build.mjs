@@ -14,7 +14,7 @@ function bundle(module) {
     minify: true,
     write: false,
     format: "iife",
-    define: { "import.meta.url": "location.href" }, // of files that the page does not need
+    define: { "import.meta.url": "location.href" }, // for files that the page does not need
     target: "es2022",
     legalComments: "inline",
     nodePaths: [join(import.meta.dirname ?? ".", "node_modules")],

@@ -51,7 +51,7 @@ function addKeys(player, actions, changeSpeed) {
   };
 }
 
-/** Dropped, or chosen. */
+/** Opens files that are dropped or chosen. */
 function addFiles(player) {
   const open = (file) => file && player.open(file.name, file);
   $("file").onchange = () => {
@@ -65,7 +65,7 @@ function addFiles(player) {
   };
 }
 
-/** The list of clips, where there are any. Clips may have the same name: values are indices. */
+/** Shows the list of clips, if any. Clips may have the same name: values are indices. */
 export function showClips(clips) {
   $("clip").hidden = clips.length === 0;
   $("clip").replaceChildren(new Option("All clips", ""),

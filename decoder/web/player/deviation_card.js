@@ -1,17 +1,17 @@
-// The distances from a reference: as colours on the mesh, and in numbers.
+// Shows distances from a reference: as colours on the mesh, and in numbers.
 import { digits, roundedUp } from "./facts.js";
 
 const $ = (id) => document.getElementById(id);
 
 export class DeviationCard {
   constructor({ info, gridStep }) {
-    this.unit = 2 ** (info.positionBits - 1) * gridStep; // of the cube where it is drawn
+    this.unit = 2 ** (info.positionBits - 1) * gridStep; // half the side of the drawn cube
     this.largest = 0;
-    this.difference = undefined; // what is said of a reference that does not fit its hash
+    this.difference = undefined; // message on a reference that does not match its hash
     this.isShown = false;
   }
 
-  /** Of a frame without distances, the surface has its own colour. */
+  /** Shows a frame. Without distances, the surface has its own colour. */
   show({ index, distances, largest = 0, rms, referenceError }, viewer) {
     if (distances && referenceError) {
       this.difference ??=

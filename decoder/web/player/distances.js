@@ -1,8 +1,8 @@
-// The distance of each vertex from the same vertex of another encoding of the animation.
+// Distances of vertices from the same vertices of another encoding of the animation.
 
-/** Of frames with integers, on the grids of their decoders; in the cube from -1 to 1 that holds
- * the grid of the first. vertices: if the frame has drawn ones, those of the stream, of which each
- * counts once in the root mean square. */
+/** Computes distances between frames with integers on the grids of their decoders, in the cube from -1
+ * to 1 that holds the grid of the first. vertices: if the frame has drawn vertices, their vertices of
+ * the stream, each of which counts once in the root mean square. */
 export function vertexDistances(frame, decoder, reference, referenceDecoder, vertices) {
   const scale = 2 ** (1 - decoder.info.positionBits);
   const referenceScale = (scale / decoder.gridStep) * referenceDecoder.gridStep;
@@ -17,7 +17,7 @@ export function vertexDistances(frame, decoder, reference, referenceDecoder, ver
     let square = 0;
     for (let c = 0; c < 3; ++c) {
       const i = 3 * v + c;
-      // Powers of two: nothing is rounded.
+      // Scales are powers of two: nothing is rounded.
       const wanted = (b[3 * other + c] + referenceOrigin[c]) * referenceScale;
       const d = (a[i] + origin[c]) * scale - wanted;
       square += d * d;

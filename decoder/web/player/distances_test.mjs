@@ -35,6 +35,6 @@ test("TheSamePositionOnAFinerGridIsAtDistance0", () => {
   const distancesOf = (integers) => vertexDistances(
     { integers: Int32Array.from(position) }, grid, { integers: Int32Array.from(integers) }, fine);
   assert.equal(distancesOf(same).largest, 0);
-  const moved = [same[0] + 64, same[1], same[2]]; // by a step of the coarser grid
+  const moved = [same[0] + 64, same[1], same[2]]; // moved by a step of the coarser grid
   assert.equal(distancesOf(moved).largest, 2 ** -15);
 });

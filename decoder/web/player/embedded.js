@@ -1,6 +1,6 @@
-// What rlpcdec and scripts/player put into the page.
+// Contents that rlpcdec and scripts/player put into the page.
 
-/** Bytes of the base64 texts of some elements, which go: a long stream is in parts. */
+/** Takes the bytes of the base64 texts of elements, and removes these: a long stream is in parts. */
 function takeBlob(selector) {
   const parts = [...document.querySelectorAll(selector)].map((element) => {
     const text = atob(element.textContent);
@@ -10,7 +10,7 @@ function takeBlob(selector) {
   return new Blob(parts);
 }
 
-/** { name, stream, reference }: blobs; or undefined: then the page has no stream. */
+/** Returns { name, stream, reference }, blobs; undefined if the page has no stream. */
 export function embeddedStream() {
   const description = document.getElementById("stream-description");
   if (!description) return undefined;
@@ -25,10 +25,10 @@ export function embeddedStream() {
 // WebAssembly can address 4 GiB: enough for two decoders with this limit, and the data drawn.
 const kMaxMemory = 3 * 2 ** 29;
 
-/** Options of RlpcDecoder.open(): the page needs no other files. */
+/** Returns options of RlpcDecoder.open() with which the page needs no other files. */
 export function embeddedDecoder() {
   const module = takeBlob("#wasm").arrayBuffer().then((bytes) => WebAssembly.compile(bytes));
-  let address; // of the worker's script: one for all workers of the page
+  let address; // script of the worker, one for all workers of the page
   const worker = () => {
     if (!address) {
       const script = document.getElementById("worker").textContent;

@@ -1,4 +1,4 @@
-// What the page says in words and numbers.
+// Words and numbers on the page.
 import { State, kStateNames } from "./frame_states.js";
 
 const kSizes = [[1, "B"], [1e3, "kB"], [1e6, "MB"], [1e9, "GB"], [1e12, "TB"]];
@@ -7,7 +7,7 @@ export function grouped(number) {
   return Math.round(number).toLocaleString("en").replaceAll(",", "\u2009");
 }
 
-/** With so many digits that count: "0.0123", "1230", "12". */
+/** Formats a number with `count` significant digits: "0.0123", "1230", "12". */
 export function digits(value, count = 3) {
   return String(Number(value.toPrecision(count)));
 }
@@ -22,7 +22,7 @@ export function ofTime(ms) {
   return ms < 10 ? `${digits(ms, 2)} ms` : `${grouped(ms)} ms`;
 }
 
-/** [name, value] of a stream: of the info of its decoder. */
+/** Returns [name, value] of a stream, from the info of its decoder. */
 export function streamFacts({ vertices, triangles, frames, frameRate, duration, bytes, profile, level }) {
   const rate = (8 * bytes) / (vertices * frames);
   return [
@@ -43,12 +43,13 @@ const kStateTexts = {
   [State.error]: "cannot be decoded",
 };
 
-/** Nothing is laid out anew if it is the text that is there. */
+/** Sets the text of an element. An unchanged text needs no new layout. */
 function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** error: of the frame, checkError: what has stopped the check of all; or undefined. */
+/** Shows the state. error: of the frame, or undefined; checkError: error that stopped the check of all
+ * frames, or undefined. */
 export function showState(element, states, frame, { error, checkError }) {
   const state = states.states[frame];
   element.dataset.state = kStateNames[state];
@@ -69,7 +70,7 @@ export function showState(element, states, frame, { error, checkError }) {
   ].join("\n"));
 }
 
-/** The smallest of 1, 2, 5 x 10^k that is at least `value`. */
+/** Returns the smallest of 1, 2, 5 x 10^k that is at least `value`. */
 export function roundedUp(value) {
   if (!(value > 0)) return 0;
   const power = 10 ** Math.floor(Math.log10(value));

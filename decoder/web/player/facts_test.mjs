@@ -1,4 +1,4 @@
-// Run by player_test.py: numbers as the page writes them.
+// Run by player_test.py: formats of numbers on the page.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 

@@ -1,21 +1,21 @@
-// What is known of each frame: whether it was decoded, and fits the hashes of the stream.
+// State of each frame: whether it was decoded, and matches the hashes of the stream.
 
 export const State = { open: 0, decoded: 1, agrees: 2, differs: 3, error: 4 };
 export const kStateNames = ["open", "decoded", "agrees", "differs", "error"];
-const kHashRule = "R-HSH-02"; // broken by a frame that does not fit its hash
+const kHashRule = "R-HSH-02"; // broken by a frame that does not match its hash
 const kColours = ["#0000", "#6d7a8a", "#55c58a", "#ef6a5b", "#ef6a5b"];
 
 export class FrameStates {
   constructor(numFrames, canvas) {
     this.states = new Uint8Array(numFrames);
-    this.counts = [numFrames, 0, 0, 0, 0]; // of frames in each state
+    this.counts = [numFrames, 0, 0, 0, 0]; // number of frames in each state
     this.crcs = new Uint32Array(numFrames);
     this.canvas = canvas;
     this.isDrawn = false;
-    this.isComplete = false; // every frame was decoded in order
+    this.isComplete = false; // whether every frame was decoded in order
   }
 
-  /** first <= frame < end */
+  /** Sets the state of frames first <= frame < end. */
   set(first, end, state) {
     for (let frame = first; frame < end; ++frame) {
       --this.counts[this.states[frame]];
@@ -24,7 +24,7 @@ export class FrameStates {
     }
   }
 
-  /** Of a frame that was decoded, perhaps with an error, or only its error. */
+  /** Receives a frame that was decoded, perhaps with an error, or only its error. */
   receive(frame, { error, comparedFrames: compared, crc }) {
     this.isDrawn = false;
     const differs = error?.rule === kHashRule;
@@ -38,11 +38,11 @@ export class FrameStates {
     } else if (this.states[frame] === State.open) {
       this.set(frame, frame + 1, State.decoded);
     }
-    if (error && !differs) this.set(frame, frame + 1, State.error); // behind the last frame
+    if (error && !differs) this.set(frame, frame + 1, State.error); // error after the last frame
   }
 
-  /** A strip as wide as the time line, of `count` frames; of frames that share a
-   * pixel, the worst is shown. */
+  /** Draws a strip of `count` frames, as wide as the time line; a pixel shows the worst of its
+   * frames. */
   draw(from, count) {
     const width = Math.round(this.canvas.clientWidth * devicePixelRatio);
     if (this.isDrawn && this.canvas.width === width) return;

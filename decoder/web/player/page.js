@@ -1,4 +1,4 @@
-// The page: a stream, a view of it, and the controls between them.
+// Page: a stream, its view, and controls.
 import { Playback } from "../package/src/index.js";
 import { Viewer, kRampCss } from "../viewer/viewer.js";
 import { addControls, kWireModes, showClips, showToggles } from "./controls.js";
@@ -12,7 +12,7 @@ const kBytesAhead = 64e6;
 const kCheckedAtOnce = 1e8; // vertices of all frames
 
 const $ = (id) => document.getElementById(id);
-// What the address asks for, as in player.html?src=walk.rlpc#frame=20&wire=over
+// Request in the address, as in player.html?src=walk.rlpc#frame=20&wire=over
 const wanted = new URLSearchParams(location.hash.slice(1));
 const source = new URLSearchParams(location.search).get("src");
 
@@ -29,7 +29,7 @@ class Player {
     this.resize();
   }
 
-  /** stream, reference: blobs, or URLs. */
+  /** Opens a stream. stream, reference: blobs or URLs. */
   async open(name, stream, reference) {
     document.body.dataset.state = "loading";
     document.title = name;
@@ -41,7 +41,7 @@ class Player {
     this.session?.close();
     Object.assign(this, { playback: null, session: null, edges: null, errors: new Map(),
       isChecking: false, checkError: undefined, shownFrame: undefined });
-    const opening = (this.opening = {}); // not this one any more, if another is opened meanwhile
+    const opening = (this.opening = {}); // replaced if another is opened meanwhile
     try {
       const options = { ...await this.decoderOptions(),
         onProgress: (progress) => opening === this.opening && this.showProgress(progress) };
@@ -80,7 +80,7 @@ class Player {
       failed: (error, index) => this.keepResult(index, { error }),
     });
     this.playback.setSpeed(Number($("speed").value));
-    document.body.dataset.state = "ready"; // what is said ends with the first frame
+    document.body.dataset.state = "ready"; // the message ends with the first frame
     this.setWire(Math.max(0, kWireModes.indexOf(wanted.get("wire"))));
     this.chooseClip(session.decoder.clips.find(({ name }) => name === wanted.get("clip")));
     this.showToggles();
@@ -89,7 +89,7 @@ class Player {
     this.loadRest(session);
   }
 
-  /** Until the frame of the whole mesh is there. */
+  /** Shows a coarse mesh until the frame of the whole mesh arrives. */
   async showCoarse(index) {
     const { session } = this;
     const coarse = await session.coarseFrame(index);
@@ -100,17 +100,17 @@ class Player {
     this.say("");
   }
 
-  /** For the first frame of the whole mesh. */
+  /** Prepares the first frame of the whole mesh. */
   prepare(mesh) {
     this.mesh = mesh;
     this.isPrepared = true;
-    this.flat = this.wantsFlat || Boolean(mesh.isFlat); // in glTF, meshes without normals are
+    this.flat = this.wantsFlat || Boolean(mesh.isFlat); // as meshes without normals in glTF
     this.viewer.set({ flat: this.flat });
     this.sayProblems(mesh.problems);
     $("plain").hidden = !mesh.look;
   }
 
-  /** What is not needed for the first frames, and the check of all. */
+  /** Loads what the first frames do not need, and checks all frames. */
   async loadRest(session) {
     try {
       await session.download();
@@ -123,7 +123,7 @@ class Player {
   }
 
   async request(index, signal) {
-    await undefined; // what a seek replaces at once is not loaded
+    await undefined; // does not load what a seek replaces at once
     signal.throwIfAborted();
     const frame = await this.session.frame(index, { normals: !this.flat, signal });
     this.keepResult(index, frame);
@@ -138,7 +138,7 @@ class Player {
     ++this.ms.frames;
   }
 
-  /** What Playback says is to be shown now. */
+  /** Shows the frame that Playback returns. */
   show({ index, frame }) {
     if (frame) {
       if (this.isPrepared) this.showMesh();
@@ -165,7 +165,7 @@ class Player {
         Object.assign(document.createElement(tag), { textContent: text }))));
   }
 
-  /** Of a stream from a server. */
+  /** Shows the progress of a stream from a server. */
   showProgress({ loaded = 0, total = loaded } = {}) {
     const isWhole = loaded >= total;
     $("progress").hidden = isWhole;
@@ -175,7 +175,7 @@ class Player {
     }
   }
 
-  /** What changes from frame to frame; for the time line, the frame that is asked for. */
+  /** Shows the numbers of a frame; on the time line, the requested frame. */
   showNumbers() {
     const { frame, first, count, frameRate } = this.playback;
     const seconds = (frame - first) / frameRate;
@@ -194,7 +194,7 @@ class Player {
     $("message").hidden = text === "";
   }
 
-  /** What of the stream is not shown. */
+  /** Lists the parts of the stream that are not shown. */
   sayProblems(problems) {
     $("problems").textContent = problems.join("\n");
   }
@@ -257,7 +257,7 @@ class Player {
   setFlat(flat) {
     this.flat = this.wantsFlat = flat;
     this.viewer.set({ flat });
-    this.seek(this.playback.frame); // with normals, or without
+    this.seek(this.playback.frame); // normals may have changed
     this.showToggles();
   }
 
@@ -277,7 +277,7 @@ class Player {
     this.playback?.setSpeed(speed);
   }
 
-  /** What stops it need not stop playing. */
+  /** Checks all frames. Its errors do not stop playback. */
   async checkAll() {
     if (this.isChecking) return;
     const { session } = this;
@@ -318,7 +318,7 @@ class Player {
   }
 }
 
-/** Names may have a % that stands for nothing else. */
+/** Decodes a name, which may have a literal %. */
 function decoded(name) {
   try {
     return decodeURIComponent(name);

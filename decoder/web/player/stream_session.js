@@ -1,14 +1,13 @@
-// A stream that is shown, with its reference and the check of all its frames: what the page asks
-// of the package.
+// Shown stream, with its reference and the check of all its frames: the page's use of the package.
 import { RlpcDecoder } from "../package/src/index.js";
 import { byMaterial, hasNormals } from "../package/src/sets.js";
 import { readMaterials } from "./asset_materials.js";
 import { vertexDistances } from "./distances.js";
 
-/** At most so many arrays of frames that are not shown any more are kept. */
+/** Maximum number of frames kept to reuse their arrays. */
 const kMostSpare = 4;
 
-/** Of the names of attributes: see Viewer.setMesh(). */
+/** Returns the look for Viewer.setMesh(), from the names of attributes. */
 function lookOf({ attributes }, parts) {
   const uvs = [...attributes.values()].filter(({ name, components }) =>
     /^uv\d+$/.test(name) && components === 2).map(({ name, values }) => [name, values]);
@@ -17,7 +16,7 @@ function lookOf({ attributes }, parts) {
 }
 
 export class StreamSession {
-  /** stream: a blob or a URL; options: of RlpcDecoder.open(). */
+  /** Opens a stream. stream: a blob or a URL; options: of RlpcDecoder.open(). */
   static async open(stream, reference, options) {
     const session = new StreamSession();
     Object.assign(session, { stream, options, spare: [], isClosed: false });
@@ -30,7 +29,7 @@ export class StreamSession {
     return !(this.stream instanceof Blob);
   }
 
-  /** Without it, the stream is played all the same. */
+  /** Opens the reference. The stream plays without it if that fails. */
   async openReference(stream) {
     this.hasReference = true;
     try {
@@ -47,8 +46,8 @@ export class StreamSession {
     }
   }
 
-  /** Half of the vertex layers of a stream that comes from a server: they are there sooner.
-   * Returns the mesh and its frame; undefined where there are no layers, or they have an error. */
+  /** Decodes half of the vertex layers of a stream from a server, which arrive sooner. Returns the mesh
+   * and its frame; undefined without layers, or if they have an error. */
   async coarseFrame(index) {
     const { layers } = this.decoder.info;
     if (!this.isRemote || layers < 2) return undefined;
@@ -62,12 +61,12 @@ export class StreamSession {
         coarse.close();
       }
     } catch {
-      return undefined; // the whole mesh has it, too, and it is said there
+      return undefined; // the whole mesh has the same error, and reports it
     }
   }
 
-  /** Vertices that are drawn with what the stream has of them: { numVertices, triangles, look,
-   * isFlat } for the viewer, without a look if there is none; problems are what cannot be shown. */
+  /** Returns the mesh for the viewer: { numVertices, triangles, look, isFlat }, without a look if the
+   * stream has none; problems: parts that cannot be shown. */
   async mesh() {
     const { decoder } = this;
     const { vertices, hasAttributes, hasAsset, damagedUnits } = decoder.info;
@@ -92,7 +91,7 @@ export class StreamSession {
     }
   }
 
-  /** What is wrong with it is no fault of the mesh. */
+  /** Reads the asset. Its errors do not affect the mesh. */
   async readAsset() {
     try {
       const asset = await this.decoder.asset();
@@ -103,7 +102,7 @@ export class StreamSession {
     }
   }
 
-  /** Pairs of drawn vertices. */
+  /** Returns edges, pairs of drawn vertices. */
   async edges() {
     const edges = await this.decoder.edges();
     if (!this.drawn) return edges;
@@ -112,7 +111,7 @@ export class StreamSession {
     return edges.map((vertex) => place[vertex]);
   }
 
-  /** A frame to draw, with distances from the reference. */
+  /** Decodes a frame to draw, with distances from the reference. */
   async frame(index, { normals, signal }) {
     const frame = await this.decoder.frame(index, {
       positions: false, coordinates: true, integers: this.hasReference, normals, tolerant: true,
@@ -122,14 +121,14 @@ export class StreamSession {
     return Object.assign(frame, { box: [...min, ...max] });
   }
 
-  /** Of the coordinates, which are around the centre. */
+  /** Returns the box of the coordinates, which are relative to the centre. */
   boxOf({ bounds }) {
     const scale = 2 ** (1 - this.decoder.info.positionBits) / this.decoder.gridStep;
     const half = bounds.max.map((most, axis) => ((most - bounds.min[axis]) * scale) / 2);
     return { min: half.map((value) => -value), max: half };
   }
 
-  /** What is wrong with the reference is no fault of the stream. */
+  /** Compares a frame with the reference, whose errors do not affect the stream. */
   async compare(frame, signal) {
     frame.referenceError = this.referenceError;
     if (!this.reference) return;
@@ -145,18 +144,18 @@ export class StreamSession {
     }
   }
 
-  /** A frame that is not shown any more. */
+  /** Keeps a frame that is no longer shown, to reuse its arrays. */
   recycle(frame) {
     if (this.spare.length < kMostSpare) this.spare.push(frame);
   }
 
-  /** The whole stream, from then on as a blob. */
+  /** Loads the whole stream, which is a blob from then on. */
   async download() {
     if (this.isRemote) this.stream = await this.decoder.download();
   }
 
-  /** Decodes all frames in order with a decoder of its own, so that playing goes on. Returns false
-   * if it was stopped; throws what has ended it early. */
+  /** Decodes all frames in order with a separate decoder, so that playback continues. Returns false if
+   * it was stopped; throws the error that ended it. */
   async checkAll(receive) {
     const checker = await RlpcDecoder.open(this.stream, this.options);
     this.checker = checker;

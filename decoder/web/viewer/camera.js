@@ -1,9 +1,9 @@
-// A camera that turns about a mesh of size 1, fits it into view and follows it.
+// Camera that turns about a mesh of size 1, fits it into view and follows it.
 import { dot, perspective, viewAxes, viewMatrix } from "./matrices.js";
 
-const kTan = Math.tan(16 * Math.PI / 180); // of half the vertical field of view
+const kTan = Math.tan(16 * Math.PI / 180); // half the vertical field of view
 const kMargin = 1.12;
-const kSlack = 0.05; // of the size of the frame: how far it may move before the camera follows
+const kSlack = 0.05; // part of the size of the frame by which it may move before the camera follows
 const kFirstView = { yaw: 0.5, pitch: 0.3 };
 
 export class Camera {
@@ -13,7 +13,7 @@ export class Camera {
     this.look({ centre: [0, 0, 0], halfSize: [0, 0, 0] }, [[-0.5, 0, 0], [0.5, 0, 0]]);
   }
 
-  /** listener is called whenever the view changes. */
+  /** Adds a listener, which is called whenever the view changes. */
   addListener(listener) {
     this.listeners.push(listener);
   }
@@ -22,8 +22,8 @@ export class Camera {
     for (const listener of this.listeners) listener();
   }
 
-  /** Back to the first view, with a mesh in its middle, as large as fits. box: around the mesh, in
-   * the world; points: its vertices, [x, y, z]. */
+  /** Returns to the first view, with a mesh in its middle, as large as fits. box: of the mesh, in the
+   * world; points: its vertices, [x, y, z]. */
   look(box, points) {
     Object.assign(this, kFirstView, { target: [...box.centre], offset: [0, 0, 0], pan: [0, 0, 0] });
     this.points = points;
@@ -38,20 +38,20 @@ export class Camera {
     this.changed();
   }
 
-  /** Points in the first view: to the right, up and towards us of its middle. */
+  /** Returns points in the axes of the first view: right, up and towards the viewer. */
   firstView(points) {
     const axes = viewAxes(kFirstView.yaw, kFirstView.pitch);
     const middle = this.target.map((value, i) => value + this.offset[i]);
     return points.map((point) => axes.map((axis) => dot(axis, point) - dot(axis, middle)));
   }
 
-  /** From which all points are in the first view, with a margin. */
+  /** Returns the distance from which all points are in the first view, with a margin. */
   fittingDistance(points) {
     return this.firstView(points).reduce((distance, [x, y, z]) => Math.max(distance,
       z + Math.max(Math.abs(x) / this.aspect, Math.abs(y)) * kMargin / kTan), 1e-3);
   }
 
-  /** Of the picture, from the middle of the first view. */
+  /** Returns the middle of the picture, from the middle of the first view. */
   middle(points) {
     const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
     for (const [x, y, z] of this.firstView(points)) {
@@ -64,7 +64,7 @@ export class Camera {
     return [0, 1].map((i) => (low[i] + high[i]) / 2);
   }
 
-  /** Keeps the mesh in the middle, and goes back for what grows. */
+  /** Keeps the mesh in the middle, and moves back if it grows. */
   follow(box, points) {
     const away = box.centre.map((value, i) => value - this.target[i]);
     const slack = kSlack * Math.hypot(...box.halfSize);
@@ -76,7 +76,7 @@ export class Camera {
     this.fit(Math.max(this.fitted, this.fittingDistance(points)));
   }
 
-  /** Keeps what the user has zoomed. */
+  /** Fits a distance, and keeps the zoom of the user. */
   fit(distance) {
     this.distance *= distance / this.fitted;
     this.fitted = distance;
@@ -87,7 +87,7 @@ export class Camera {
     this.fit(this.fittingDistance(this.points));
   }
 
-  /** {view, projection, eye}. */
+  /** Returns { view, projection, eye }. */
   matrices() {
     const axes = viewAxes(this.yaw, this.pitch);
     const eye = this.target.map((value, i) =>
@@ -102,7 +102,7 @@ export class Camera {
     this.pitch = Math.max(-1.55, Math.min(1.55, this.pitch + 0.008 * y));
   }
 
-  /** By pixels of a canvas of this height. */
+  /** Moves by pixels of a canvas with a height. */
   move(x, y, height) {
     const [right, up] = viewAxes(this.yaw, this.pitch);
     const pixel = 2 * kTan * this.distance / height;
@@ -114,7 +114,8 @@ export class Camera {
     this.distance = Math.max(least, Math.min(most, this.distance * factor));
   }
 
-  /** Drag to turn, shift or the right button to move, wheel to zoom; two fingers move and zoom. */
+  /** Handles input: drag to turn, shift or the right button to move, wheel to zoom; two fingers move
+   * and zoom. */
   attach(canvas) {
     const held = new Map();
     const spread = () => {

@@ -1,17 +1,17 @@
-// Run by player_test.py: where the camera sees points.
+// Run by player_test.py: places of points in the view of the camera.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { Camera } from "./camera.js";
 import { multiply } from "./matrices.js";
 
-/** Corners of a box; centre and half its size. */
+/** Returns the corners of a box with a centre and half its size. */
 function corners({ centre, halfSize }) {
   return [0, 1, 2, 3, 4, 5, 6, 7].map((corner) =>
     centre.map((value, i) => value + (corner >> i & 1 ? halfSize[i] : -halfSize[i])));
 }
 
-/** [left, right, bottom, top] of points in the view, which is from -1 to 1. */
+/** Returns [left, right, bottom, top] of points in the view, from -1 to 1. */
 function seen(camera, points) {
   const { view, projection } = camera.matrices();
   const m = multiply(projection, view);
@@ -70,7 +70,7 @@ test("the view is turned, moved and zoomed, and comes back", () => {
   const first = seen(camera, corners(kBoxes[0]));
   camera.zoom(0.5);
   assert.ok(seen(camera, corners(kBoxes[0]))[1] > 1.5 * first[1]);
-  camera.move(100, 0, 500); // by a fifth of the height: 0.4 in the view
+  camera.move(100, 0, 500); // a fifth of the height: 0.4 in the view
   const middle = (box) => (box[0] + box[1]) / 2;
   assert.ok(middle(seen(camera, [kBoxes[0].centre])) > 0.3);
   camera.turn(30, 1e6);

@@ -1,12 +1,12 @@
 // Colours and textures of the parts of a mesh, for the surface shader.
 
-/** The units of textures by what they hold; the shadow has the first. */
+/** Texture units by contents; the shadow has the first. */
 export const kUnits = { base: 1, normal: 2, emission: 3 };
 const kUploadUnit = kUnits.base;
 
 const kNoTexture = { sampler: {}, uv: "uv0", rows: [[1, 0, 0], [0, 1, 0]] };
 
-/** Where no material tells another. */
+/** Default material. */
 const kPlain = { base: [0.491, 0.451, 0.392, 1], emission: [0, 0, 0], normalScale: 1, cutoff: 0,
   textures: { base: kNoTexture, normal: kNoTexture, emission: kNoTexture } };
 
@@ -23,9 +23,9 @@ export class Materials {
     this.uploaded = []; // { texture, picture, sampler, format }
   }
 
-  /** materials: { base, emission, normalScale, textures: { base, normal, emission }, blends,
+  /** Sets materials: { base, emission, normalScale, textures: { base, normal, emission }, blends,
    * doubleSided, cutoff }. Textures: { picture, sampler, uv, rows }; pictures are images or
-   * undefined, samplers as in glTF, rows those of a matrix for texture coordinates. */
+   * undefined, samplers as in glTF, and rows form a matrix for texture coordinates. */
   set(materials) {
     this.clear();
     this.list = materials;
@@ -40,7 +40,7 @@ export class Materials {
     this.list = [];
   }
 
-  /** What the card has of a picture, which it gets once for each sampler and kind of numbers. */
+  /** Returns the texture of a picture, uploaded once per sampler and number format. */
   textureOf(use, { picture, sampler }) {
     if (!picture) return this.white;
     const format = use === "normal" ? this.gl.RGBA8 : this.gl.SRGB8_ALPHA8;
@@ -74,7 +74,7 @@ export class Materials {
     return texture;
   }
 
-  /** Of the number in a part; under colours of vertices, what has no material is white. */
+  /** Returns the material with the number of a part; without one, white under colours of vertices. */
   at(number, hasTints) {
     return this.list[number] ?? (hasTints ? { ...kPlain, base: [1, 1, 1, 1] } : kPlain);
   }

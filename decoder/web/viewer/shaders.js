@@ -1,8 +1,8 @@
-// What runs on the graphics card. Light is linear until the last line.
+// Shaders. Light is linear until the last line.
 
 const kVersion = "#version 300 es\nprecision highp float;\n";
 
-/** Colours of a share from 0 to 1, as in CSS; for legends and for the surface. */
+/** Ramp of colours from 0 to 1, in CSS, for legends and for the surface. */
 export const kRamp =
   [[217, 222, 229], [250, 215, 110], [241, 140, 56], [207, 43, 74], [104, 22, 125]];
 
@@ -16,7 +16,7 @@ const kRampColour = `
     return pow(mix(ramp[left], ramp[left + 1], at - float(left)), vec3(2.2));
   }`;
 
-// Share of the light that reaches a place: the mean of 3 x 3 looks at the map.
+// Part of the light that reaches a place: the mean of 3 x 3 samples of the map.
 const kLit = `
   uniform highp sampler2DShadow shadowMap;
   uniform bool hasShadow;
@@ -125,7 +125,7 @@ export const kDepth = {
   fragment: `${kVersion} void main() {}`,
 };
 
-// In front of the surface, so that it does not hide them.
+// Draws edges in front of the surface, so that it does not hide them.
 export const kEdges = {
   vertex: `${kVersion}
   in vec3 position; uniform mat4 model; uniform mat4 camera;
@@ -138,7 +138,7 @@ export const kEdges = {
   void main() { colour = vec4(ink.rgb * ink.a, ink.a); }`,
 };
 
-// A grid that fades away, and the shadow upon it.
+// Draws a grid that fades out, and the shadow on it.
 export const kFloor = {
   vertex: `${kVersion}
   in vec2 corner; uniform vec3 centre; uniform mat4 camera; uniform mat4 light;

@@ -1,4 +1,4 @@
-// Draws an animated mesh on a floor, in light, with WebGL 2 and nothing else.
+// Draws a lit, animated mesh on a floor, with WebGL 2 alone.
 import { Camera } from "./camera.js";
 import { Materials, kUnits } from "./materials.js";
 import { multiply, orthographic, viewAxes, viewMatrix } from "./matrices.js";
@@ -8,13 +8,13 @@ export { Camera } from "./camera.js";
 export { kRampCss } from "./shaders.js";
 
 const kShadowPixels = 2048;
-const kMostShadowTriangles = 2e6; // beyond, a second drawing for the shadow costs too much
+const kMostShadowTriangles = 2e6; // beyond it, drawing a shadow takes too long
 const kAttributes =
   ["position", "normal", "deviation", "tint", "uv", "normalUv", "emissionUv"];
-const kKey = viewAxes(0.755, 0.876); // axes of the lights; the last is where they come from
+const kKey = viewAxes(0.755, 0.876); // axes of the lights; the last one points to the light
 const kRim = viewAxes(-2.455, 0.38);
 
-/** At most so many vertices, [x, y, z]. */
+/** Returns at most `most` vertices, [x, y, z]. */
 function sampled(coordinates, most = 5000) {
   const numVertices = coordinates.length / 3;
   const every = Math.ceil(numVertices / most);
@@ -41,7 +41,7 @@ class Program {
     this.places = new Map();
   }
 
-  /** Values by the names of uniforms: matrices, vectors, numbers, truth values. */
+  /** Uses the program with values by names of uniforms: matrices, vectors, numbers, booleans. */
   use(uniforms) {
     const { gl } = this;
     gl.useProgram(this.program);
@@ -76,7 +76,7 @@ export class Viewer {
       gl.uniform1i(gl.getUniformLocation(this.programs.surface.program, `${use}Picture`), unit);
     }
     this.vertices = gl.createVertexArray();
-    this.buffers = new Map(); // by name, of the mesh
+    this.buffers = new Map(); // buffers of the mesh by name
     this.flat = false;
     this.wire = "off"; // or "over" the surface, or "alone"
     this.deviationScale = 0; // distance of the last colour of the ramp; 0: no colours
@@ -115,9 +115,9 @@ export class Viewer {
     gl.vertexAttribPointer(place, 2, gl.FLOAT, false, 0, 0);
   }
 
-  /** The first frame follows with showFrame(), materials perhaps with setMaterials(). look: { uvs,
-   * tints, parts }: texture coordinates, [name, values]; colours of vertices { values, components }
-   * or undefined; for each material its triangles: { start, count, material }. */
+  /** Sets the mesh. The first frame follows with showFrame(), materials perhaps with setMaterials().
+   * look: { uvs, tints, parts }: texture coordinates, [name, values]; colours of vertices { values,
+   * components } or undefined; triangles of each material: { start, count, material }. */
   setMesh(numVertices, triangles, look) {
     for (const buffer of this.buffers.values()) this.gl.deleteBuffer(buffer);
     this.buffers.clear();
@@ -135,7 +135,7 @@ export class Viewer {
     this.isDrawn = false;
   }
 
-  /** As of Materials.set(); for the numbers in the parts of the mesh. */
+  /** Sets materials (Materials.set()) for the numbers in the parts of the mesh. */
   setMaterials(materials) {
     this.materials.set(materials);
     this.isDrawn = false;
@@ -155,13 +155,13 @@ export class Viewer {
     if (!values) return;
     this.store(name, gl.ARRAY_BUFFER, values);
     gl.enableVertexAttribArray(place);
-    const isPacked = values instanceof Int16Array; // four for each vertex
+    const isPacked = values instanceof Int16Array; // four values per vertex
     gl.vertexAttribPointer(place, name === "deviation" ? 1 : 3, isPacked ? gl.SHORT : gl.FLOAT,
       isPacked, isPacked ? 8 : 0, 0);
   }
 
-  /** Arrays may be used again afterwards. coordinates: from `centre`, as is the box, [least x, y,
-   * z, most x, y, z]. normals and distances may be left out. */
+  /** Shows a frame, whose arrays may be reused afterwards. coordinates and box ([min x, y, z, max x, y,
+   * z]): relative to `centre`. normals and distances are optional. */
   showFrame({ coordinates, normals, distances, box, centre }) {
     this.setAttribute("position", coordinates);
     this.setAttribute("normal", normals);
@@ -178,7 +178,7 @@ export class Viewer {
     this.isDrawn = false;
   }
 
-  /** The frame has size 1, stands on the floor, and is seen whole. */
+  /** Scales the frame to size 1, puts it on the floor, and shows all of it. */
   lookAtAll() {
     const { box, centre } = this.frame;
     const size = Math.hypot(box[3] - box[0], box[4] - box[1], box[5] - box[2]);
@@ -194,7 +194,7 @@ export class Viewer {
     return this.up === "z" ? [x, z, -y] : [x, y, z];
   }
 
-  /** The box of a frame in the world. */
+  /** Returns the box of a frame in the world. */
   placed({ box, centre }) {
     const middle = [0, 1, 2].map((i) =>
       this.scale * (centre[i] - this.origin[i] + (box[i] + box[i + 3]) / 2));
@@ -202,7 +202,7 @@ export class Viewer {
     return { centre: this.turned(middle), halfSize: this.turned(half).map(Math.abs) };
   }
 
-  /** Some of the vertices, in the world. */
+  /** Returns some of the vertices, in the world. */
   samplePoints() {
     const offset = this.frame.centre.map((value, i) => value - this.origin[i]);
     return this.frame.sample.map((point) =>
@@ -222,7 +222,7 @@ export class Viewer {
     this.isDrawn = false;
   }
 
-  /** Of flat, wire, plain, deviationScale. */
+  /** Sets some of flat, wire, plain and deviationScale. */
   set(settings) {
     Object.assign(this, settings);
     this.isDrawn = false;
@@ -233,7 +233,7 @@ export class Viewer {
     if (this.frame) this.lookAtAll();
   }
 
-  /** To the size of its place in the page. */
+  /** Resizes the canvas to its place in the page. */
   resize() {
     const ratio = Math.min(devicePixelRatio || 1, 2);
     this.canvas.width = Math.round(this.canvas.clientWidth * ratio);
@@ -249,7 +249,7 @@ export class Viewer {
     gl.drawElements(gl.TRIANGLES, this.numCorners, gl.UNSIGNED_INT, 0);
   }
 
-  /** Returns the matrix from the world to the light's view. */
+  /** Draws the shadow. Returns the matrix from the world to the view of the light. */
   drawShadow(model) {
     const { gl } = this;
     const matrix = multiply(orthographic(1.2, -4, 4), viewMatrix(kKey, this.camera.target));
@@ -306,7 +306,7 @@ export class Viewer {
     for (const blends of [false, true]) this.drawParts(parts ?? [{ material: -1 }], blends);
   }
 
-  /** Those that are seen through after the others. */
+  /** Draws opaque parts, or parts that blend, which come after them. */
   drawParts(parts, blends) {
     const { gl, look } = this;
     if (blends) {
@@ -341,8 +341,7 @@ export class Viewer {
     gl.disable(gl.CULL_FACE);
   }
 
-  /** Lets an attribute have the floats of a buffer; without components, none: then it is white, or
-   * 0. */
+  /** Binds an attribute to the floats of a buffer; without components, to the constant white or 0. */
   point(name, components, buffer = name) {
     const { gl } = this;
     const place = kAttributes.indexOf(name);

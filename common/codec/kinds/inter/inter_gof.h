@@ -52,7 +52,7 @@ struct InterSettings {
   WeightSettings weights;  // without adaptive factors
   int prime_log2 = 0;
   bool frame_hash_flag = false;
-  std::uint32_t max_earlier_distance = 0;     // of repeated and reference, in coding order
+  std::uint32_t max_earlier_distance = 0;  // bound of repeated and reference, in coding order
   Vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups] layers
   Vector<std::uint8_t> layer_step;            // [num_layers], 1 to kMaxLayerStep
   RestSettings rest;                          // settings of the first frame

@@ -1,4 +1,4 @@
-// Addresses that callers give: URLs, or in node paths of files.
+// Addresses from callers: URLs, or in node paths of files.
 
 const kScheme = /^[a-z][a-z\d+.-]+:/i; // longer than the letter of a drive
 
@@ -6,8 +6,8 @@ function isNode() {
   return !globalThis.document && typeof globalThis.process?.getBuiltinModule === "function";
 }
 
-/** The URL of an address: relative to the page or the worker; in node, a path relative to the working
- * directory. */
+/** Returns the URL of an address, relative to the page or the worker; in node, of a path relative to
+ * the working directory. */
 export function urlOf(address) {
   if (address instanceof URL) return address;
   if (isNode() && !kScheme.test(address)) {
@@ -16,7 +16,7 @@ export function urlOf(address) {
   return new URL(address, globalThis.document?.baseURI ?? globalThis.location?.href);
 }
 
-/** Whether a URL is that of a file, and files can be read. */
+/** Returns whether a URL names a file, and files can be read. */
 export function isFile(url) {
   return url.protocol === "file:" && isNode();
 }

@@ -1,11 +1,11 @@
-// The JSON of an asset (a GLB), measured before anything parses it: a stream of a few kilobytes can
-// hold megabytes of it, which become hundreds as objects.
+// Measures the JSON of an asset (a GLB) before it is parsed: a stream of a few kilobytes can hold
+// megabytes of JSON, which take hundreds of megabytes as objects.
 import { RlpcError } from "./error.js";
 import { glbChunks } from "./glb.js";
 
 const kMaxDepth = 100; // as in common/json/json_text.h
 const kBytesOfValue = 160; // an object or array with its place in another
-const kBytesOfByte = 4; // of text, as strings
+const kBytesOfByte = 4; // text as strings
 
 const kQuote = 0x22;
 const kBackslash = 0x5c;
@@ -13,8 +13,8 @@ const kComma = 0x2c;
 const kOpening = new Set([0x5b, 0x7b]); // [ {
 const kClosing = new Set([0x5d, 0x7d]);
 
-/** An upper bound of the memory of a text as objects, and how deeply these nest. The text need not
- * be valid. Cost: linear in the text. */
+/** Returns an upper bound of the memory of a text as objects, and their nesting depth. The text need
+ * not be valid. Cost: linear in the text. */
 export function measureJson(text) {
   let [values, depth, deepest, isString] = [1, 0, 0, false];
   for (let i = 0; i < text.length; ++i) {

@@ -1,4 +1,4 @@
-// Weighted sums of frames: what is shown between two frames, or in a crossfade. Nothing is allocated.
+// Weighted sums of frames, for pictures between two frames and crossfades. Allocates nothing.
 
 /** Frames and their weights, which add up to 1. */
 export class FrameMix {
@@ -32,7 +32,7 @@ export class FrameMix {
     for (let i = 0; i < this.count; ++i) this.weights[i] /= sum;
   }
 
-  /** The place of the largest weight. */
+  /** Index of the largest weight. */
   get strongest() {
     let best = 0;
     for (let i = 1; i < this.count; ++i) if (this.weights[i] > this.weights[best]) best = i;
@@ -47,7 +47,7 @@ export class FrameMix {
     return true;
   }
 
-  /** Copies another one. Frames that it had are let go. */
+  /** Copies another mix, and drops its own frames. */
   copy(other) {
     this.count = other.count;
     this.frames.length = other.count;
@@ -58,8 +58,8 @@ export class FrameMix {
   }
 }
 
-/** Positions or normals of a mix. places: the vertex of the frames for each one of `out`, or
- * undefined. A frame alone is copied exactly. */
+/** Computes positions or normals of a mix. places: the vertex of the frames for each vertex of `out`,
+ * or undefined. A single frame is copied exactly. */
 export function blend(out, { frames, weights, count }, name, places) {
   const first = frames[0][name];
   if (count === 1) {
@@ -111,9 +111,9 @@ function addAt(out, a, weight, places) {
   }
 }
 
-const kSmallest = 1e-12; // square of the length of a sum of unit vectors that still has a direction
+const kSmallest = 1e-12; // smallest squared length of a sum of unit vectors with a direction
 
-/** Normals of a mix: unit vectors. Where those of the frames cancel out, the strongest. */
+/** Computes normals of a mix: unit vectors; where those of the frames cancel out, the strongest. */
 export function blendNormals(out, mix, places) {
   const { normals } = mix.frames[mix.strongest];
   if (mix.count === 2) {
@@ -124,7 +124,7 @@ export function blendNormals(out, mix, places) {
   }
 }
 
-/** Two frames in one pass, for most pictures have two. instead: normals where the sum is nothing. */
+/** Adds two frames, the usual number, in one pass. instead: normals where the sum is zero. */
 function unitSum(out, { frames, weights: [weightA, weightB] }, instead, places) {
   const [{ normals: a }, { normals: b }] = frames;
   for (let i = 0; i < out.length; i += 3) {
@@ -160,8 +160,8 @@ function copyVector(out, at, from, place) {
   out[at + 2] = from[place + 2];
 }
 
-/** The box of a mix: the same sums as those of positions, rounded in the same places, so that
- * every position is within. side: "min" or "max"; out: an array of three numbers. */
+/** Computes the box of a mix by the same sums as positions, with the same rounding, so that it holds
+ * every position. side: "min" or "max"; out: an array of three numbers. */
 export function blendBounds(out, { frames, weights, count }, side) {
   for (let c = 0; c < 3; ++c) {
     if (count === 1) {

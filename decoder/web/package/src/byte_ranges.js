@@ -1,7 +1,8 @@
-// The parts of a stream that have been loaded.
+// Parts of a stream that have been loaded.
 
 export class ByteRanges {
-  /** maxBytes: beyond it, the parts used longest ago go, but none used since protect(). */
+  /** maxBytes: beyond it, the least recently used parts are dropped, except those used since
+   * protect(). */
   constructor(maxBytes = Infinity) {
     this.maxBytes = maxBytes;
     this.numBytes = 0;
@@ -10,12 +11,12 @@ export class ByteRanges {
     this.protectedFrom = 0;
   }
 
-  /** What is used from now on stays. */
+  /** Keeps all parts that are used from now on. */
   protect() {
     this.protectedFrom = this.time + 1;
   }
 
-  /** Index of the first part that ends after `offset`. */
+  /** Returns the index of the first part that ends after `offset`. */
   indexAt(offset) {
     let low = 0;
     let high = this.parts.length;
@@ -27,7 +28,7 @@ export class ByteRanges {
     return low;
   }
 
-  /** The first gap [start, end) in a range; undefined if all of it is there. */
+  /** Returns the first gap [start, end) in a range; undefined if it has none. */
   gap(start, end) {
     for (let i = this.indexAt(start); start < end; ++i) {
       const part = this.parts[i];
@@ -37,7 +38,7 @@ export class ByteRanges {
     return undefined;
   }
 
-  /** Where it has bytes already, the new ones are dropped. */
+  /** Adds bytes; drops those that are already loaded. */
   add(start, bytes) {
     const end = start + bytes.length;
     for (let gap = this.gap(start, end); gap; gap = this.gap(start, end)) {
@@ -58,7 +59,7 @@ export class ByteRanges {
     return true;
   }
 
-  /** Fills `out` from an offset; false if bytes are missing. */
+  /** Fills `out` from an offset; returns false if bytes are missing. */
   copy(offset, out) {
     const end = offset + out.length;
     if (this.gap(offset, end)) return false;

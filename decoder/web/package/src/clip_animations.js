@@ -1,14 +1,14 @@
 // Clips as AnimationClips of three.js, for its AnimationMixer.
 //
-// A track has two numbers: the place in the clip, in frames, and 1. The mixer blends them with what
-// the mesh has without actions, which is 0 and 0: times the weight w of the action, it hands over
-// w * place and w, so that the mesh knows both. Each clip is a property of its own, so that the
-// places of two clips are never blended; the mesh blends their positions.
+// A track has two numbers: the place in the clip, in frames, and 1. The mixer blends them with the
+// state of the mesh without actions, 0 and 0: for the weight w of the action, it sets w * place and
+// w, from which the mesh computes both. Each clip is a separate property, so that the places of two
+// clips are never blended; the mesh blends their positions.
 import { AnimationClip, LinearInterpolant, VectorKeyframeTrack } from "three";
 
 const kEqualRates = 1e-4; // relative: times of keys are 32-bit floats
 
-/** The place in a clip, as AnimationMixer sets it; of one mesh. */
+/** Place of one mesh in a clip, as AnimationMixer sets it. */
 export class ClipPose {
   constructor() {
     this.weighted = 0; // weight * place
@@ -16,12 +16,12 @@ export class ClipPose {
     this.failed = () => {};
   }
 
-  /** In frames from the start of the clip. */
+  /** Place in frames from the start of the clip. */
   get place() {
     return this.weighted / this.weight;
   }
 
-  /** Called by AnimationMixer for the state without actions. */
+  /** Returns the state without actions to AnimationMixer. */
   toArray(array, offset) {
     array[offset] = 0;
     array[offset + 1] = 0;
@@ -33,12 +33,12 @@ export class ClipPose {
   }
 }
 
-/** The property of a mesh for an animation. */
+/** Returns the name of the property of a mesh for an animation. */
 export function poseName(slot) {
   return `rlpcPose${slot}`;
 }
 
-/** Places without the rounding of times, which are 32-bit floats. */
+/** Interpolates places without the rounding of times, which are 32-bit floats. */
 class PlaceInterpolant extends LinearInterpolant {
   constructor(times, values, result, frameRate) {
     super(times, values, 2, result ?? undefined);
@@ -62,15 +62,15 @@ class PlaceInterpolant extends LinearInterpolant {
 const number = new Float32Array(1);
 const bits = new Uint32Array(number.buffer);
 
-/** The time of a key: the first 32-bit float that is not before it, so that it counts for those who
- * multiply it by the frame rate, as AnimationUtils.subclip() does. */
+/** Returns the time of a key: the first 32-bit float not before it, for callers that multiply it by
+ * the frame rate, as AnimationUtils.subclip() does. */
 function timeOfKey(seconds) {
   number[0] = seconds;
   if (number[0] < seconds) ++bits[0];
   return number[0];
 }
 
-/** clip: { name, frames }; duration: seconds. */
+/** Makes an AnimationClip. clip: { name, frames }; duration: seconds. */
 export function clipAnimation(clip, slot, frameRate, duration) {
   const { name, frames } = clip;
   const times = Float32Array.from({ length: frames }, (_, i) => timeOfKey(i / frameRate));

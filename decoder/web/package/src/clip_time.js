@@ -1,22 +1,22 @@
-// The time of clips (7.3 and 7.15 of the specification). Frame k of a clip is its pose k / frameRate
-// seconds after its start, as keys of glTF are: n frames take n - 1 intervals, the first pose is that
-// of the start and the last one that of the end. Where a clip repeats, its end is the start of the
-// next turn. A clip whose last pose is the first, as loops have it, thus never halts.
+// Clip time (7.3 and 7.15 of the specification). Frame k of a clip is due k / frameRate seconds after
+// its start, like keys of glTF: a clip of n frames lasts n - 1 intervals, with the first pose at its
+// start and the last one at its end. When a clip repeats, its end is the start of the next pass. A
+// loop whose last pose equals its first thus never pauses.
 //
 // Times here are in intervals, from one frame to the next; loop is "repeat", "once" or "pingpong".
-// Times of frames are rounded, as those of callers are: what is within kExact of a frame, or of the
-// middle between two, counts as being there. common/files/clip_time.h has the same rules.
+// Times within kExact of a frame, or of the middle between two frames, are rounded to it.
+// common/files/clip_time.h has the same rules.
 
-/** In intervals. */
+/** Tolerance in intervals. */
 export const kExact = 1e-6;
 
-/** The time from the first to the last of so many frames, in seconds. */
+/** Returns the seconds from the first to the last of `frames` frames. */
 export function clipSeconds(frames, frameRate) {
   return (frames - 1) / frameRate;
 }
 
-/** Where a clip of so many frames is after `time` intervals of playing: a place from 0, the first
- * frame, to frames - 1, the last. Between frames, it has a fraction. A time below 0 is 0. */
+/** Returns the place in a clip after `time` intervals: from 0, the first frame, to frames - 1, the
+ * last; with a fraction between frames. Negative times count as 0. */
 export function placeAt(time, frames, loop) {
   const last = frames - 1;
   if (!(time > 0) || last === 0) return 0;
@@ -26,25 +26,25 @@ export function placeAt(time, frames, loop) {
   return place > last ? 2 * last - place : place;
 }
 
-/** The place, or the frame if it is that near to one. */
+/** Returns a place, or the frame within kExact of it. */
 export function exactPlace(place) {
   const frame = Math.round(place);
   return Math.abs(place - frame) < kExact ? frame : place;
 }
 
-/** The frame to show at a place, if it is one: the nearest, so that every frame is shown. */
+/** Returns the nearest frame to a place, which is shown without interpolation. */
 export function nearestFrame(place) {
   return Math.floor(place + 0.5 + kExact);
 }
 
-/** When the frame of a step is exact, in intervals: the last of a turn of "repeat" at the same time as
- * the first of the next. */
+/** Returns the time at which the frame of a step is exact, in intervals. With "repeat", the last frame
+ * of a pass has the time of the first frame of the next. */
 export function timeOfStep(step, frames, loop) {
   return loop === "repeat" ? step - Math.floor(step / frames) : step;
 }
 
-/** When the nearest frame becomes the one of a step, in intervals. Steps count frames as they are
- * shown: all of them in each turn of "repeat"; forth and back without either end twice in
+/** Returns the time at which the frame of a step becomes the nearest, in intervals. Steps count frames
+ * as they are shown: all of them in each pass of "repeat"; back and forth, each end once, in
  * "pingpong". */
 export function startOfStep(step, frames, loop) {
   const before = 0.5 + kExact;

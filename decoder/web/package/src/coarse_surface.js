@@ -1,10 +1,10 @@
-// Attributes of coarse meshes. Positions of a coarse mesh are those of its vertices in the whole mesh,
-// and each of these has one drawn vertex there or, at a seam, several: one for each side. The corners
-// of a coarse triangle take those of one side. Where it has corners on both, texture coordinates of
-// one side are continued to the other.
+// Attributes of coarse meshes. The vertices of a coarse mesh are vertices of the whole mesh, which have
+// one drawn vertex or, at a seam, one per side. The corners of a coarse triangle take the drawn
+// vertices of one side; where it has corners on both, texture coordinates of one side are continued to
+// the other.
 import { mapped, Unfolding } from "./unfolding.js";
 
-/** The first place of each number below `count` in a list that is ascending, and the end. */
+/** Returns the first place of each number below `count` in an ascending list, and the end. */
 function starts(ascending, count) {
   const first = new Uint32Array(count + 1);
   for (const number of ascending) ++first[number + 1];
@@ -12,7 +12,7 @@ function starts(ascending, count) {
   return first;
 }
 
-/** For each drawn vertex, the triangles that have it. */
+/** Triangles around each drawn vertex. */
 class TrianglesAround {
   constructor({ indices, vertices }) {
     this.first = starts(indices, vertices.length);
@@ -28,21 +28,21 @@ class TrianglesAround {
   }
 }
 
-/** The corners of coarse triangles: drawn vertices of the whole mesh, and further ones, which are
- * copies of these with other texture coordinates. */
+/** Corners of coarse triangles: drawn vertices of the whole mesh, and copies of these with other
+ * texture coordinates. */
 class Corners {
   constructor(drawn, around, numVertices) {
     this.sets = [...drawn.attributes.values()].filter(({ name, components }) =>
       name.startsWith("uv") && components === 2);
     this.unfolding = new Unfolding(drawn, this.sets.map(({ values }) => values));
-    this.copies = starts(drawn.vertices, numVertices); // of each vertex of the stream
+    this.copies = starts(drawn.vertices, numVertices); // [vertex of the stream] first drawn vertex
     this.around = around;
     this.numDrawn = drawn.vertices.length;
-    this.further = []; // { drawn, uvs }: uvs by set, or undefined: those of the drawn vertex
-    this.numbers = new Map(); // of further ones, by what they are
+    this.further = []; // copies: { drawn, uvs }: uvs by set, or undefined: those of the drawn vertex
+    this.numbers = new Map(); // numbers of the copies, by their contents
   }
 
-  /** Drawn vertices, or numDrawn and more: further ones, for three vertices of the stream. */
+  /** Returns drawn vertices, or numDrawn and more for copies, for three vertices of the stream. */
   choose([first, ...others]) {
     let best;
     for (let copy = this.copies[first]; copy < this.copies[first + 1]; ++copy) {
@@ -68,7 +68,7 @@ class Corners {
     return number < this.numDrawn ? number : this.further[number - this.numDrawn].drawn;
   }
 
-  /** An attribute of drawn() at corners. */
+  /** Returns an attribute of drawn() at corners. */
   at(set, numbers) {
     const { name, components, values } = set;
     const picked = new Float32Array(components * numbers.length);
@@ -82,7 +82,7 @@ class Corners {
   }
 }
 
-/** The material of each coarse triangle: the one that most of its corners have around them. */
+/** Returns the material of each coarse triangle: the most frequent one around its corners. */
 function materialsOf(corners, around, materials) {
   const votes = new Map();
   return Uint32Array.from({ length: corners.length / 3 }, (_, t) => {
@@ -103,15 +103,15 @@ function materialsOf(corners, around, materials) {
   });
 }
 
-/** A coarse mesh with attributes. drawn, materialOf: those of the whole mesh, drawn() and the set
- * `material` of attributes(); coarse: { indices, vertices }, triangles and their vertices in the whole
- * mesh. Returns
+/** Makes a coarse mesh with attributes. drawn, materialOf: drawn() of the whole mesh and the set
+ * `material` of its attributes(); coarse: { indices, vertices }, triangles and their vertices in the
+ * whole mesh. Returns
  *   places      the drawn vertex, in the whole mesh, of each vertex of the result
  *   vertices    its place in coarse.vertices
  *   indices     triangles of these vertices
- *   attributes  as those of drawn()
- *   materialOf  as the one given, or undefined
- * Takes time in proportion to the triangles of the whole mesh, usually. */
+ *   attributes  in the form of drawn()
+ *   materialOf  in the form of the argument, or undefined
+ * Time: usually proportional to the triangles of the whole mesh. */
 export function coarseSurface({ drawn, materialOf }, coarse) {
   const numVertices = Math.max(drawn.vertices.at(-1) ?? -1, coarse.vertices.at(-1) ?? -1) + 1;
   const around = new TrianglesAround(drawn);
@@ -132,7 +132,7 @@ export function coarseSurface({ drawn, materialOf }, coarse) {
   };
 }
 
-/** The numbers that are used, ascending, and the same corners as indices of these. */
+/** Returns the numbers that are used, ascending, and the corners as indices into them. */
 function compacted(corners, count) {
   const indexOf = new Uint32Array(count);
   for (const corner of corners) indexOf[corner] = 1;
@@ -146,7 +146,7 @@ function compacted(corners, count) {
   return { numbers, indices: corners.map((corner) => indexOf[corner]) };
 }
 
-/** The index of each value in a list that has them all. */
+/** Returns the index of each value in a list that has them all. */
 export function indicesIn(list, values) {
   const indexOf = new Map();
   list.forEach((value, i) => indexOf.set(value, i));

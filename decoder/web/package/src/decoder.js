@@ -18,7 +18,7 @@ function workerFrom(worker) {
   return worker ?? typeof Worker === "function" ? packageWorker : undefined;
 }
 
-/** Null if there is none; undefined if it is not JSON, which decoders do not check. */
+/** Parses metadata: null if there is none; undefined if it is not JSON, which decoders do not check. */
 function parsedMetadata(text) {
   try {
     return text === "" ? null : JSON.parse(text);
@@ -27,7 +27,7 @@ function parsedMetadata(text) {
   }
 }
 
-/** Clips with the frames that the stream has; those of streams of unknown length may claim more. */
+/** Returns clips with the frames that the stream has; an open-ended stream may declare more. */
 function withinStream(clips, frames, frameRate) {
   return clips.map((clip) => ({ ...clip, frames: Math.min(clip.frames, frames - clip.firstFrame) }))
     .filter((clip) => clip.frames > 0)
@@ -41,10 +41,10 @@ function byName(sets) {
 export class RlpcDecoder {
   #link;
   #stream;
-  #latest; // of the frames asked for with `replace`
+  #latest; // last request with `replace`
   #isClosed = false;
-  #inherited; // options of other decoders of the stream, unless they have their own
-  #known = new Map(); // promises of what is asked for once
+  #inherited; // options that other decoders of the stream inherit
+  #known = new Map(); // promises of results that are requested once
 
   static async open(source, options = {}) {
     const shared = source instanceof RlpcDecoder ? source : undefined;
@@ -103,7 +103,7 @@ export class RlpcDecoder {
     this.bounds = this.#box([-half, -half, -half, half - 1, half - 1, half - 1]);
   }
 
-  /** A box of the grid, in units. */
+  /** Returns a box of the grid, in units. */
   #box(extent) {
     const units = (positions) => Array.from(positions, (position, axis) =>
       Math.fround((position + this.gridOrigin[axis]) * this.gridStep));
@@ -127,7 +127,7 @@ export class RlpcDecoder {
     return this.#frame(index, result);
   }
 
-  /** A signal that also ends the request before, if that waits. */
+  /** Returns a signal, and ends the previous request if that waits. */
   #replacing(signal) {
     this.#latest?.abort(aborted("a later request took its place"));
     this.#latest = new AbortController();
@@ -156,7 +156,7 @@ export class RlpcDecoder {
       for (let next = first; next <= last || waiting.length > 0; ) {
         while (next <= last && waiting.length <= ahead) {
           const request = this.frame(next++, { ...options, signal: either });
-          request.catch(() => {}); // it is reported in its turn
+          request.catch(() => {}); // reported in its turn
           waiting.push(request);
         }
         yield await waiting.shift();
@@ -178,7 +178,7 @@ export class RlpcDecoder {
     return this.#once("asset", ({ bytes }) => bytes);
   }
 
-  /** What failed can be asked for again. */
+  /** Requests a result once, or again after a failure. */
   #once(type, made) {
     if (!this.#known.has(type)) {
       this.#known.set(type, this.#request({ type }).then(made).catch((error) => {

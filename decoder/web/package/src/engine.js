@@ -1,4 +1,4 @@
-// Decodes streams, one request after the other: in a worker, or beside its caller.
+// Decodes streams, one request after the other: in a worker, or on the thread of its caller.
 //
 //   request                                         result
 //   open        module, source or shared, options   stream  and its description
@@ -11,8 +11,8 @@
 //   load        stream                              bytes   of the whole stream
 //   close       stream
 //
-// Each has an id, which its reply has, too: { id, result } or { id, error }. { cancel: id } ends a
-// request early. Messages without an id say what has been loaded: { stream, loaded, size }.
+// Each has an id, which its reply repeats: { id, result } or { id, error }. { cancel: id } ends a
+// request early. Messages without an id report what has been loaded: { stream, loaded, size }.
 import { checkAsset } from "./asset_limit.js";
 import { aborted, packed } from "./error.js";
 import { openSource } from "./sources.js";
@@ -20,11 +20,11 @@ import { WasmAttributes } from "./wasm_attributes.js";
 import { MissingBytes, WasmDecoder } from "./wasm_decoder.js";
 
 const kTailBytes = 4096; // usually holds the GOF index
-const kBlockBytes = 16384; // loaded at least, where nothing is known of the place
-const kMostBlockBytes = 1 << 20; // of blocks one after the other, each twice as large
-const kSparseBytes = 1024; // the same for a coarse mesh, which leaves most slices out
-const kStepBytes = 1 << 20; // of a stream that is loaded whole
-const kUnitHeaderBytes = 5; // of the next unit, which ends an access unit
+const kBlockBytes = 16384; // loaded at least, without an index
+const kMostBlockBytes = 1 << 20; // largest of consecutive blocks, each twice as large
+const kSparseBytes = 1024; // block for a coarse mesh, which omits most slices
+const kStepBytes = 1 << 20; // step of a stream that is loaded whole
+const kUnitHeaderBytes = 5; // header of the next unit, which ends an access unit
 
 /** Resolves after the messages that wait have been received. */
 function messagesReceived() {
@@ -38,13 +38,13 @@ function messagesReceived() {
   });
 }
 
-/** A decoder, and the source of its stream. */
+/** Decoder and source of a stream. */
 class OpenStream {
   constructor(source, options) {
     this.source = source;
     this.options = options;
     this.marks = new Float64Array(); // landmarks of the index
-    this.block = { start: 0, bytes: kBlockBytes }; // the last; it begins where it was asked for
+    this.block = { start: 0, bytes: kBlockBytes }; // last block; it begins at the requested place
     this.lastFrame = -1;
     this.endIsChecked = false;
   }
@@ -66,7 +66,7 @@ class OpenStream {
     return this.describe();
   }
 
-  /** What a stream may be that is none. */
+  /** Returns the apparent type of a file that is not a stream. */
   guess() {
     const start = new Uint8Array(4);
     if (!this.source.ranges.copy(0, start)) return "";
@@ -81,7 +81,7 @@ class OpenStream {
     try {
       this.marks = await this.complete(() => this.decoder.landmarks(), signal);
     } catch (error) {
-      // One that is wrong is an error only of those who need it.
+      // A wrong index is an error only for calls that need it.
       if (error.name === "AbortError" || error.kind === "network") throw error;
     }
   }
@@ -96,7 +96,7 @@ class OpenStream {
     };
   }
 
-  /** The result of a call, which is made again whenever bytes have been loaded for it. */
+  /** Returns the result of a call, which is repeated whenever bytes have been loaded for it. */
   async complete(call, signal) {
     this.source.ranges.protect();
     for (;;) {
@@ -104,14 +104,14 @@ class OpenStream {
         return call();
       } catch (missing) {
         if (!(missing instanceof MissingBytes)) throw missing;
-        // Of a stream that comes from its start to its end, no more is waited for than is needed.
+        // A stream that arrives from its start to its end is awaited only as far as needed.
         const [start, end] = this.source.whole ? [missing.start, missing.end] : this.widened(missing);
         await this.source.load(start, end, signal);
       }
     }
   }
 
-  /** As few requests as possible, for few bytes that are not needed: the rest of a GOF at once. */
+  /** Widens a range to the rest of a GOF: few requests, with few unneeded bytes. */
   widened({ start, end }) {
     if (this.options.coarseLayers > 0) {
       return [start, Math.min(Math.max(end, start + kSparseBytes), this.source.size)];
@@ -121,7 +121,8 @@ class OpenStream {
     return [start, Math.min(Math.max(end, wanted), this.source.size)];
   }
 
-  /** Of a stream without an index. Where it is read in order, requests become fewer. */
+  /** Returns the end of a block of a stream without an index. Reading in order takes fewer and fewer
+   * requests. */
   blockEnd(start) {
     const { start: before, bytes } = this.block;
     const follows = start >= before + bytes && start < before + 2 * bytes;
@@ -129,8 +130,8 @@ class OpenStream {
     return start + this.block.bytes;
   }
 
-  /** Loads the next GOF while this one is played; without an index, what comes next. What goes
-   * wrong is found when it is needed. */
+  /** Loads the next GOF, or the next block without an index, while this one is played. Errors are
+   * reported when its bytes are needed. */
   loadAhead() {
     const { lastRead } = this.decoder;
     const { marks, source } = this;
@@ -143,7 +144,7 @@ class OpenStream {
     source.load(...this.widened({ start: next, end: next + 1 })).catch(() => {});
   }
 
-  /** All bytes of the stream. */
+  /** Returns all bytes of the stream. */
   async whole(signal) {
     const { source } = this;
     source.ranges.maxBytes = Infinity;
@@ -155,7 +156,7 @@ class OpenStream {
     return bytes;
   }
 
-  /** tolerant: also checks the rest of the stream after the last frame. */
+  /** Decodes a frame. tolerant: also checks the rest of the stream after the last frame. */
   async frame({ frame, wants, spare, drawn, tolerant }, signal) {
     const { decoder, look, header: { num_vertices: numVertices, num_frames: numFrames } } = this;
     if (drawn) await this.complete(() => look.decode(), signal);
@@ -198,7 +199,7 @@ class OpenStream {
   }
 }
 
-/** The memory of the arrays in a result. */
+/** Returns the buffers of the arrays in a result. */
 function buffersIn(result) {
   if (ArrayBuffer.isView(result)) return [result.buffer];
   if (result === null || typeof result !== "object") return [];
@@ -210,7 +211,7 @@ export class Engine {
   constructor(post) {
     this.post = post;
     this.streams = new Map();
-    this.entries = new Map(); // of requests without a reply, by id
+    this.entries = new Map(); // requests without a reply, by id
     this.queue = [];
     this.isRunning = false;
   }
@@ -223,7 +224,7 @@ export class Engine {
     const entry = { message, controller: new AbortController() };
     this.entries.set(message.id, entry);
     if (message.type === "load") {
-      this.answer(entry); // decoding goes on
+      this.answer(entry); // decoding continues meanwhile
     } else {
       this.queue.push(entry);
       if (!this.isRunning) this.run();
@@ -257,7 +258,7 @@ export class Engine {
       : this.streams.get(shared).source;
     const opened = new OpenStream(from, options);
     try {
-      // Of its own for each: one whose memory is exhausted is lost.
+      // A separate instance per stream: one whose memory is exhausted is lost.
       const result = await opened.open(await WasmDecoder.create(module), signal);
       this.streams.set(stream, opened);
       return result;
@@ -297,7 +298,7 @@ export class Engine {
     if (source) this.leave(source);
   }
 
-  /** Ends what a source loads, once no stream uses it. */
+  /** Closes a source once no stream uses it. */
   leave(source) {
     if (![...this.streams.values()].some((other) => other.source === source)) source.close?.();
   }

@@ -1,9 +1,9 @@
-// What the package rejects its promises with.
+// Errors with which the package rejects promises.
 
-/** Of a stream, its source, or a limit. */
+/** Error of a stream, its source, or a limit. */
 export class RlpcError extends Error {
   /** kind: one of kKinds. rule: id in the specification, or "". element: the syntax element, or
-   * "". bitOffset: where it begins, from the start of the stream. */
+   * "". bitOffset: its start, from the start of the stream. */
   constructor(message, { kind, rule = "", element = "", bitOffset = 0 }) {
     super(message);
     this.name = "RlpcError";
@@ -26,7 +26,7 @@ export function closed() {
   return new RlpcError("the decoder is closed", { kind: "closed" });
 }
 
-/** An error as a message, which would lose its class. */
+/** Packs an error as a message, which would lose its class. */
 export function packed(error) {
   const { name, message, kind, rule, element, bitOffset } = error;
   return { name, message, kind, rule, element, bitOffset };

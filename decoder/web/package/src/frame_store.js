@@ -1,22 +1,22 @@
-// Decoded frames of a stream, shared by all meshes that show it: each is decoded once while there
-// is memory for it, and the arrays of frames that are dropped are filled again.
+// Decoded frames of a stream, shared by all meshes that show it: each is decoded once while memory
+// lasts, and the arrays of dropped frames are reused.
 import { aborted } from "./error.js";
 
-const kInFlight = 2; // frames that are wanted: one is decoded while another travels
+const kInFlight = 2; // requested frames: one is decoded while another is transferred
 const kMinFrames = 8; // kept whatever their size
-const kRetryMilliseconds = 2000; // until a frame that could not be decoded is asked for again
+const kRetryMilliseconds = 2000; // until a frame that could not be decoded is requested again
 
-/** Bytes for frames that are kept, unless the caller says otherwise. */
+/** Default bytes for frames that are kept. */
 export const kUsualFrameMemory = 2 ** 26;
 
 export class FrameStore {
   #decode;
   #capacity;
-  #frames = new Map(); // by index
+  #frames = new Map(); // key: index
   #pending = new Map(); // requests without a reply, by index
-  #wants = new Map(); // by who wants them: the index of a frame. Served in this order, in turn.
-  #failures = new Map(); // by index: when
-  #numWanted = 0; // of #pending
+  #wants = new Map(); // index of the frame that each user wants; served in this order, in turn
+  #failures = new Map(); // time of the failure by index
+  #numWanted = 0; // number of #pending that users want
   #clock = 0; // counts uses
   #isClosed = false;
   #isDue = false; // whether #pump() will be called
@@ -25,16 +25,16 @@ export class FrameStore {
     this.#pump();
   };
 
-  /** decode(index, into, signal): a promise of a frame, with { positions, normals, bounds };
-   * `into`: a frame whose arrays can be filled, or undefined. arrived(): called when a frame, or its
-   * error, is there. */
+  /** decode(index, into, signal) returns a promise of a frame, { positions, normals, bounds };
+   * `into`: a frame whose arrays can be reused, or undefined. arrived() is called when a frame, or its
+   * error, arrives. */
   constructor({ decode, bytesPerFrame, maxBytes = kUsualFrameMemory, arrived = () => {} }) {
     this.#decode = decode;
     this.#capacity = Math.max(kMinFrames, Math.floor(maxBytes / Math.max(1, bytesPerFrame)));
     this.arrived = arrived;
   }
 
-  /** How many frames are kept at most, but for more that are in use at the same time. */
+  /** Maximum number of frames to keep, unless more are in use at the same time. */
   get capacity() {
     return this.#capacity;
   }
@@ -47,21 +47,21 @@ export class FrameStore {
     return this.#frames.has(index);
   }
 
-  /** The frame if it is there; valid until the caller waits for something. */
+  /** Returns a frame if it is decoded; valid until the caller awaits something. */
   get(index) {
     const frame = this.#frames.get(index);
     if (frame) frame.used = ++this.#clock;
     return frame;
   }
 
-  /** The frame if it is there, which is then kept until release(). */
+  /** Returns a frame if it is decoded, and keeps it until release(). */
   hold(index) {
     const frame = this.get(index);
     if (frame) ++frame.users;
     return frame;
   }
 
-  /** A promise of a frame, which is then kept until release(). */
+  /** Returns a promise of a frame, and keeps it until release(). */
   acquire(index, signal) {
     const there = this.hold(index);
     if (there) return Promise.resolve(there);
@@ -85,7 +85,7 @@ export class FrameStore {
     });
   }
 
-  /** Ends a request that nobody waits for. */
+  /** Ends a request without a user. */
   #leave(request) {
     if (--request.waiting > 0 || request.isWanted) return;
     this.#forget(request);
@@ -97,22 +97,22 @@ export class FrameStore {
     this.#trim();
   }
 
-  /** Asks for a frame on behalf of `who`, in place of what it wanted before. failed(error, index)
-   * of `who` is called if the frame cannot be decoded. */
+  /** Requests a frame on behalf of `who`, in place of the one it wanted before. Calls failed(error,
+   * index) of `who` if the frame cannot be decoded. */
   want(who, index) {
     if (this.#isClosed || this.#frames.has(index) || this.hasFailed(index)) return;
     this.#wants.set(who, index);
     if (this.#isDue) return;
     this.#isDue = true;
-    queueMicrotask(this.#pumpLater); // frames that are being blended now must not be filled again
+    queueMicrotask(this.#pumpLater); // frames that are being blended now must not be reused
   }
 
-  /** Ends what `who` wants. */
+  /** Ends the request of `who`. */
   dismiss(who) {
     this.#wants.delete(who);
   }
 
-  /** Whether a frame could not be decoded, a short time ago. */
+  /** Returns whether a frame could not be decoded recently. */
   hasFailed(index) {
     const when = this.#failures.get(index);
     if (when === undefined) return false;
@@ -171,7 +171,7 @@ export class FrameStore {
       this.#forget(request);
       throw error;
     });
-    request.promise.catch(() => {}); // those who wait are told
+    request.promise.catch(() => {}); // reported to users
     return request;
   }
 
@@ -179,7 +179,7 @@ export class FrameStore {
     if (this.#pending.get(request.index) === request) this.#pending.delete(request.index);
   }
 
-  /** A frame to be filled again, where there is no memory for one more. */
+  /** Returns a frame to reuse if there is no memory for one more. */
   #spare() {
     return this.#frames.size + this.#pending.size > this.#capacity ? this.#dropOldest() : undefined;
   }
@@ -188,8 +188,7 @@ export class FrameStore {
     while (this.#frames.size > this.#capacity && this.#dropOldest()) ;
   }
 
-  /** Drops the frame whose last use is longest ago, of those that are not in use, and returns it;
-   * undefined: none. */
+  /** Drops and returns the least recently used frame that is not in use; undefined if none. */
   #dropOldest() {
     let oldest;
     for (const frame of this.#frames.values()) {

@@ -1,4 +1,4 @@
-/** Values at places, each of `width` numbers; into: an array to fill, if it fits. */
+/** Returns values at places, each of `width` numbers. into: an array to fill, if it fits. */
 export function gathered(values, places, width, into) {
   const Type = values.constructor;
   const length = width * places.length;

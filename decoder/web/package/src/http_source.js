@@ -1,4 +1,4 @@
-// A stream on a server: in ranges (RFC 9110, 14), or whole where the server has none.
+// Source of a stream on a server: in ranges (RFC 9110, 14), or whole if the server has none.
 import { ByteRanges } from "./byte_ranges.js";
 import { aborted, RlpcError } from "./error.js";
 
@@ -6,23 +6,23 @@ const kFirstBytes = 16384;
 const kMostCachedBytes = 256e6;
 
 export class HttpSource {
-  /** headers: of each request, [name, value]; credentials: as of fetch(); maxBytes: of a stream
-   * that has to be loaded whole. progress(loaded, size). */
+  /** headers: [name, value] for each request; credentials: see fetch(); maxBytes: limit of a stream
+   * that must be loaded whole; progress(loaded, size): callback. */
   constructor({ url, headers, credentials, maxBytes }, progress) {
     Object.assign(this, { url, headers, credentials, maxBytes, progress });
     this.ranges = new ByteRanges(kMostCachedBytes);
     this.underWay = []; // { start, end, done }
     this.loaded = 0; // bytes from the server
     this.size = undefined;
-    this.whole = undefined; // the promise of a stream that is loaded from its start to its end
-    this.waiting = []; // for more of it
-    this.stop = new AbortController(); // of everything
+    this.whole = undefined; // promise of a stream that is loaded from its start to its end
+    this.waiting = []; // callers that wait for more of it
+    this.stop = new AbortController(); // aborts all requests
   }
 
-  /** Ends all that is loaded, also what nobody waits for. */
+  /** Ends all loading, also without a user. */
   close() {
     this.stop.abort(aborted("the decoder is closed"));
-    this.reader?.cancel().catch(() => {}); // of the whole stream
+    this.reader?.cancel().catch(() => {}); // reader of the whole stream
   }
 
   async open(signal) {
@@ -36,14 +36,15 @@ export class HttpSource {
       await response.body?.cancel();
       return this.openWhole(await this.request(undefined, signal));
     }
-    if (response.status === 416) { // no byte is there
+    if (response.status === 416) { // the file is empty
       this.size = 0;
       return undefined;
     }
     return this.openWhole(response);
   }
 
-  /** Servers of other origins may hide Content-Range; some have no HEAD. Undefined: unknown. */
+  /** Returns the size; undefined if unknown. Servers of other origins may hide Content-Range; some lack
+   * HEAD. */
   async askForSize(signal) {
     const response = await this.request(undefined, signal, "HEAD").catch((error) => {
       if (error.name === "AbortError") throw error;
@@ -71,7 +72,7 @@ export class HttpSource {
     return response;
   }
 
-  /** The body of a range; no more of it is read than that. */
+  /** Returns the body of a range, and reads no more than that. */
   async receive(response, start, end) {
     // Servers of other origins may hide it.
     const first = /^bytes (\d+)-/.exec(response.headers.get("content-range") ?? "")?.[1];
@@ -92,7 +93,7 @@ export class HttpSource {
     this.progress(this.loaded, this.size);
   }
 
-  /** size: a body that is longer is cancelled, and an error. */
+  /** Returns the body. size: cancels a longer body, and throws. */
   async bodyOf(response, size) {
     const pieces = [];
     let length = 0;
@@ -118,11 +119,11 @@ export class HttpSource {
     return bytes;
   }
 
-  /** Loads all of it from a response; returns once the size is known. */
+  /** Loads the whole stream from a response; returns once the size is known. */
   async openWhole(response) {
     this.ranges.maxBytes = Infinity;
-    // A length is that of the bytes here only if nothing was compressed on the way, which
-    // servers of other origins do not tell.
+    // The length counts these bytes only if they were not compressed for transfer, which servers of
+    // other origins do not reveal.
     const length = response.headers.get("content-length");
     const isSure = response.type !== "cors" && !response.headers.has("content-encoding");
     if (length !== null && isSure) this.size = Number(length);
@@ -172,12 +173,12 @@ export class HttpSource {
     }
   }
 
-  /** Of requests under way. */
+  /** Returns the starts of pending requests after an offset. */
   startsAfter(offset) {
     return this.underWay.map((request) => request.start).filter((start) => start > offset);
   }
 
-  /** More bytes of the whole stream. */
+  /** Waits for more bytes of the whole stream. */
   more(signal) {
     const arrival = new Promise((resolve) => this.waiting.push(resolve));
     return until(Promise.race([this.whole, arrival]), signal);
@@ -209,12 +210,12 @@ export class HttpSource {
   }
 }
 
-/** Of the file on the server. */
+/** Returns the version of the file on the server. */
 function versionOf({ headers }) {
   return headers.get("etag") ?? headers.get("last-modified");
 }
 
-/** The promise, or an error as soon as the signal says so. */
+/** Returns the promise, or rejects as soon as the signal aborts. */
 function until(promise, signal) {
   if (!signal) return promise;
   return new Promise((resolve, reject) => {

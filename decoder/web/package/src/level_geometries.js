@@ -1,4 +1,4 @@
-// The geometries of one mesh, one for each level of detail that it has shown.
+// Geometries of one mesh, one for each level of detail that it has shown.
 import { Box3, Sphere, Vector3 } from "three";
 
 import { blend, blendBounds, blendNormals } from "./blend.js";
@@ -9,16 +9,16 @@ const meshPlace = new Vector3();
 
 export class LevelGeometries {
   #stream;
-  #geometries = new Map(); // by level
+  #geometries = new Map(); // key: level
   #level;
 
-  /** stream: a ShownStream, whose finest level is chosen. */
+  /** stream: a ShownStream. Chooses its finest level. */
   constructor(stream) {
     this.#stream = stream;
     this.#level = stream.levels[0];
   }
 
-  /** The geometry of the level that is chosen. */
+  /** Geometry of the chosen level. */
   get geometry() {
     let geometry = this.#geometries.get(this.#level);
     if (!geometry) {
@@ -34,14 +34,14 @@ export class LevelGeometries {
     return this.#level;
   }
 
-  /** Returns the geometry, which may show an earlier frame, or none. */
+  /** Chooses a level. Returns its geometry, which may show an earlier frame, or none. */
   choose(level) {
     this.#level = level;
     return this.geometry;
   }
 
-  /** The number of the level for a camera: the last one that does not begin farther away. The chosen
-   * one ends nearer than it begins, by its hysteresis. */
+  /** Returns the number of the level for a camera: the last one that does not begin farther away. The
+   * chosen level ends nearer than it begins, by its hysteresis. */
   numberFor({ matrixWorld: cameraMatrix, zoom = 1 }, matrixWorld, chosenLevel) {
     cameraPlace.setFromMatrixPosition(cameraMatrix);
     meshPlace.copy(this.geometry.boundingSphere.center).applyMatrix4(matrixWorld);
@@ -73,7 +73,7 @@ export class LevelGeometries {
     boundingBox.getBoundingSphere(boundingSphere);
   }
 
-  /** Shows what other geometries of the same stream and level show. */
+  /** Copies the picture of other geometries of the same stream and level. */
   copy({ geometry: from }) {
     const { geometry } = this;
     for (const name of ["position", "normal"]) {
@@ -85,8 +85,8 @@ export class LevelGeometries {
     geometry.boundingSphere.copy(from.boundingSphere);
   }
 
-  /** Frees what is not shared with geometries of other meshes. Renderers free the attributes that a
-   * geometry has when it ends, and those of the stream end with its last mesh. */
+  /** Frees attributes that geometries of other meshes do not share. Renderers free the attributes of a
+   * geometry with it; those of the stream live until its last mesh ends. */
   dispose() {
     const isLast = this.#stream.meshes.size === 1;
     for (const [level, geometry] of this.#geometries) {

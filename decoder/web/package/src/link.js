@@ -1,16 +1,17 @@
-// The engine, as its users see it: each request has a promise.
+// Connection to the engine: each request has a promise.
 import { aborted, closed, RlpcError, unpacked } from "./error.js";
 
 export class Link {
   constructor() {
     this.requests = new Map();
-    this.listeners = new Map(); // by stream
+    this.listeners = new Map(); // key: stream
     this.nextId = 0;
     this.nextStream = 0;
     this.numUsers = 0;
   }
 
-  /** In a worker: makeWorker() returns it. Without one, on the thread of the caller. */
+  /** Connects to an engine in the worker that makeWorker() returns; without it, on the thread of the
+   * caller. */
   static async create(makeWorker) {
     const link = new Link();
     if (makeWorker) {
@@ -45,7 +46,7 @@ export class Link {
         resolve, reject, done: () => signal?.removeEventListener("abort", stop) });
       try {
         this.send({ id, ...message }, transfer);
-      } catch (error) { // an array that has been handed over before
+      } catch (error) { // an array that was transferred before
         this.requests.delete(id);
         signal?.removeEventListener("abort", stop);
         reject(error);
@@ -65,7 +66,7 @@ export class Link {
     else request?.resolve(result);
   }
 
-  /** Of everything that waits, and comes later. */
+  /** Rejects all pending and later requests. */
   fail(error) {
     this.failure = error;
     for (const { reject, done } of this.requests.values()) {
@@ -75,7 +76,7 @@ export class Link {
     this.requests.clear();
   }
 
-  /** The last user ends the worker. */
+  /** Ends the worker with its last user. */
   release() {
     if (--this.numUsers > 0) return;
     this.end();

@@ -1,41 +1,41 @@
-// Which frame is shown when. Every frame is decoded and none is left out: if decoding is too
-// slow, time passes more slowly.
+// Schedules frames. Every frame is decoded and shown: if decoding is too slow, time passes more
+// slowly.
 //
-// Frames are counted in steps from the start of the range that is played, so that loops, and
-// playing backwards, need no cases of their own; clip_time.js says when a step begins.
+// Frames are counted in steps from the start of the range that is played, so that loops and
+// backward playback need no special cases; clip_time.js defines when a step begins.
 //
-// If it interpolates, a step begins where its frame is exact, and `following` and `fraction` are
-// what to show until the next one begins. Time then waits at a frame until the next is there.
+// If it interpolates, a step begins where its frame is exact; until the next one begins,
+// `following` and `fraction` define the picture. Time then waits at a frame until the next is ready.
 import {
   clipSeconds, exactPlace, kExact, nearestFrame, placeAt, startOfStep, timeOfStep,
 } from "./clip_time.js";
 import { aborted } from "./error.js";
 
-const kInFlight = 2; // one is decoded while another travels
-const kShortOf = 0.001; // intervals, where time waits for a frame
-const kMinAhead = 2; // between frames: the next, and the one that is needed from there on
+const kInFlight = 2; // one is decoded while another is transferred
+const kShortOf = 0.001; // intervals before a frame at which time waits
+const kMinAhead = 2; // if it interpolates: the next frame, and the one after it
 
 export const kLoops = ["repeat", "once", "pingpong"];
 
 export class Playback {
-  /** request(index, signal): a promise of a frame. peek(index): the frame, if no promise is needed
-   * for it. discard(frame) takes those that are not wanted any more; failed(error, index) those that
-   * cannot be had, without which playing goes on. */
+  /** request(index, signal) returns a promise of a frame; peek(index) the frame, if it is ready;
+   * discard(frame) takes frames that are no longer needed; failed(error, index) is called for frames
+   * that fail, without which playback continues. */
   constructor({ frames, frameRate, ahead = 4, interpolates = false, request,
     peek = () => undefined, discard = () => {}, failed = () => {} }) {
     Object.assign(this, { frames, frameRate, ahead, interpolates, request, peek, discard, failed });
-    this.speed = 1; // below 0: backwards
+    this.speed = 1; // negative: backwards
     this.loop = "repeat";
     this.playing = false;
     this.finished = () => {}; // called at the end of a range that is played once
-    this.looped = () => {}; // called where a range begins again, or turns back
-    this.arrived = () => {}; // called when a frame, or its error, is there
+    this.looped = () => {}; // called where a range restarts or reverses
+    this.arrived = () => {}; // called when a frame, or its error, arrives
     this.waiting = 0; // requests without a reply
-    this.ready = new Map(); // by step: { index, frame }
+    this.ready = new Map(); // { index, frame } by step
     this.setRange(0, frames);
   }
 
-  /** Plays these frames; shows the first, or the last if it plays backwards. */
+  /** Plays these frames; shows the first one, or the last one if it plays backwards. */
   setRange(first, count) {
     this.first = first;
     this.count = count;
@@ -57,7 +57,7 @@ export class Playback {
     this.seekSeconds(seconds);
   }
 
-  /** Whether `following` and `fraction` matter. */
+  /** Sets whether `following` and `fraction` are used. */
   setInterpolates(interpolates) {
     if (interpolates === this.interpolates) return;
     const { seconds } = this;
@@ -78,13 +78,13 @@ export class Playback {
   /** Seconds from the start of the range, also between frames. */
   get seconds() {
     const { count, current, loop, time } = this;
-    // The end of a turn is the start of the next: which of them it is, the frame says.
+    // The end of a pass is the start of the next; the frame decides between them.
     const place = loop === "repeat" ? time - Math.floor(current / count) * (count - 1)
                                     : placeAt(time, count, loop);
     return (this.speed < 0 ? count - 1 - place : place) / this.frameRate;
   }
 
-  /** The index of the frame of a step. */
+  /** Returns the index of the frame of a step. */
   indexAt(step) {
     const { count, loop } = this;
     let place = step;
@@ -98,13 +98,13 @@ export class Playback {
     return this.first + (this.speed < 0 ? count - 1 - place : place);
   }
 
-  /** Whether tick() need not wait for what is to be shown. */
+  /** Whether the frames to show are ready, so that tick() need not wait. */
   get isReady() {
     return (this.isShown || this.ready.has(this.current)) &&
       (!this.needsNext || this.ready.has(this.current + 1));
   }
 
-  /** Whether the time is between two frames, both of which are to be shown. */
+  /** Whether the time is between two frames, both of which are needed. */
   get needsNext() {
     return this.interpolates && !this.isAtEnd && this.passed > kExact;
   }
@@ -114,18 +114,18 @@ export class Playback {
     return this.time - timeOfStep(this.current, this.count, this.loop);
   }
 
-  /** The frame after the one that is shown, if it interpolates, and if that is there. */
+  /** The frame after the one that is shown, if it interpolates and the frame is ready. */
   get following() {
     if (!this.interpolates || !this.isShown || this.isAtEnd) return undefined;
     return this.ready.get(this.current + 1)?.frame;
   }
 
-  /** How far on the way to the following frame, from 0 to 1. */
+  /** Position between the shown and the following frame, from 0 to 1. */
   get fraction() {
     return Math.min(Math.max(exactPlace(this.passed), 0), 1);
   }
 
-  /** Whether the last frame is shown, and no other follows. */
+  /** Whether the last frame is shown, and none follows. */
   get isAtEnd() {
     return this.loop === "once" && this.current >= this.count - 1;
   }
@@ -134,7 +134,7 @@ export class Playback {
     return this.isAtEnd && exactPlace(this.time) >= this.count - 1;
   }
 
-  /** A still mesh does not play. What has ended starts again. */
+  /** Plays, unless the mesh is still. Restarts if it has ended. */
   play() {
     this.playing = this.count > 1;
     if (this.playing && this.hasEnded) this.setRange(this.first, this.count);
@@ -145,12 +145,12 @@ export class Playback {
     this.playing = false;
   }
 
-  /** To a frame of the sequence, or the nearest in the range. */
+  /** Seeks to a frame of the sequence, or the nearest one in the range. */
   seek(index) {
     this.goTo(index - this.first);
   }
 
-  /** To a time from the start of the range, or the nearest within it. */
+  /** Seeks to a time from the start of the range, or the nearest one within it. */
   seekSeconds(seconds) {
     this.goTo(seconds * this.frameRate);
   }
@@ -162,7 +162,7 @@ export class Playback {
     this.time = exactPlace(this.speed < 0 ? last - place : place); // in intervals
     this.current = this.interpolates // the step
       ? Math.floor(this.time + kExact) : nearestFrame(this.time);
-    this.next = this.current; // to be asked for
+    this.next = this.current; // next step to request
     this.isShown = false;
     this.cancel();
     this.pump();
@@ -177,8 +177,8 @@ export class Playback {
     this.waiting = 0;
   }
 
-  /** How many frames to hold, with those to come. Of a short animation, each other frame once:
-   * then the one that is shown comes again. */
+  /** Number of frames to hold, including requested ones. A short animation needs each other frame
+   * once, before the shown one recurs. */
   get wanted() {
     if (!this.playing) return (this.isShown ? 0 : 1) + (this.needsNext ? 1 : 0);
     const ahead = this.interpolates ? Math.max(kMinAhead, this.ahead) + this.turnsWithin(this.ahead)
@@ -187,7 +187,7 @@ export class Playback {
     return Math.min(ahead, this.ready.size + this.waiting + this.count - this.next);
   }
 
-  /** 1 if a turn of "repeat" ends within so many steps: two steps begin at the same time there. */
+  /** Returns 1 if a pass of "repeat" ends within `steps` steps: two steps then begin together. */
   turnsWithin(steps) {
     const { count, current, loop } = this;
     return loop === "repeat" && current % count + Math.max(kMinAhead, steps) >= count ? 1 : 0;
@@ -227,7 +227,7 @@ export class Playback {
     this.pump();
   }
 
-  /** Lets time pass; below 0, none does. Returns { index, frame } to show now, if that is new;
+  /** Advances time; not for negative seconds. Returns { index, frame } to show now, if it is new;
    * without a frame if it cannot be decoded. */
   tick(seconds) {
     if (!Number.isFinite(seconds)) throw new RangeError("the time that has passed is a finite number");
@@ -263,8 +263,8 @@ export class Playback {
     return shown;
   }
 
-  /** Intervals to play in so many seconds. After a long rest, say of a page that was hidden, one
-   * turn is played, and those before it are left out. */
+  /** Returns the intervals to play in `seconds` seconds. After a long pause, as of a hidden page, only
+   * the last pass is played. */
   intervalsIn(seconds) {
     const { count, frameRate, loop, speed } = this;
     const intervals = Math.min(seconds * frameRate * Math.abs(speed), Number.MAX_SAFE_INTEGER);
@@ -278,7 +278,7 @@ export class Playback {
       : startOfStep(step, this.count, this.loop);
   }
 
-  /** Whether the step is the first one of another turn. */
+  /** Whether the step is the first one of another pass. */
   get isAtTurn() {
     if (this.loop === "once") return false;
     return this.current % (this.loop === "repeat" ? this.count : this.count - 1) === 0;

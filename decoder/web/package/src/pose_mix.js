@@ -1,22 +1,22 @@
-// Which frames a mesh shows, and with which weights: those of the actions of an AnimationMixer, and
-// of its own playback. A place between two frames shows both; frames that are not there are asked for.
+// Frames that a mesh shows, and their weights, from actions of an AnimationMixer and from its own
+// playback. A place between two frames shows both; missing frames are requested.
 import { exactPlace, nearestFrame } from "./clip_time.js";
 
 const kNothing = 1e-4; // weights below have no effect
 
-/** One picture of one mesh. */
+/** Picture of one mesh. */
 export class PoseMix {
   /** stream: a ShownStream; poses: ClipPose of each of its animations. */
   constructor(stream, poses) {
     Object.assign(this, { stream, poses });
-    this.isComplete = true; // whether all frames that are wanted were there, or cannot be decoded
-    this.index = 0; // of the frame that counts most
+    this.isComplete = true; // whether all wanted frames were ready, or cannot be decoded
+    this.index = 0; // index of the frame with the largest weight
     this.interpolates = true;
     this.hasPoses = false; // whether actions have any weight
   }
 
-  /** Fills a FrameMix, with nothing if there is nothing to show yet. base: the frame that the
-   * playback shows, or undefined. */
+  /** Fills a FrameMix, which stays empty if no frame is ready. base: the frame that the playback
+   * shows, or undefined. */
   fill(mix, playback, base) {
     mix.clear();
     this.interpolates = playback.interpolates;
@@ -45,7 +45,7 @@ export class PoseMix {
     mix.normalise();
   }
 
-  /** Returns the index of the frame that is nearest. */
+  /** Adds the frames of the playback. Returns the index of the nearest one. */
   addBase(mix, playback, base, weight) {
     const { following, fraction } = playback;
     if (!following || fraction === 0) {
@@ -63,7 +63,7 @@ export class PoseMix {
     this.stream.frames.dismiss(pose);
   }
 
-  /** Returns the index of the frame that is nearest, of those that it adds; undefined: none. */
+  /** Adds the frames of a pose. Returns the index of the nearest one; undefined if none. */
   addPose(mix, pose, { first, count }) {
     const { frames } = this.stream;
     const { weight } = pose;
@@ -85,7 +85,7 @@ export class PoseMix {
     return instead?.index;
   }
 
-  /** Asks for the first frame that is missing; if none is, for those that come next. */
+  /** Requests the first missing frame or, if none is missing, the next ones. */
   ask(pose, { first, count }, at, before, needsNext) {
     const { frames, ahead } = this.stream;
     const backwards = pose.isActive && (pose.place < pose.before || pose.goesBack &&
@@ -103,7 +103,7 @@ export class PoseMix {
     }
   }
 
-  /** For this picture; false if the frame cannot be decoded. */
+  /** Requests a frame for this picture; returns false if it cannot be decoded. */
   want(pose, index) {
     const { frames } = this.stream;
     if (frames.hasFailed(index)) return false;

@@ -22,16 +22,16 @@ export class RLPCMesh extends Mesh {
   #loop = LoopRepeat;
   #clip = null;
   #isDisposed = false;
-  #base; // the frame of #playback that is shown, if there is one
-  #firstError; // of the first frame
+  #base; // frame of #playback that is shown, if any
+  #firstError; // error of the first frame
   #poses = []; // ClipPose of each animation
   #poseMix;
   #wanted = new FrameMix();
   #shown = new FrameMix();
   #levels;
-  #level; // that is wanted: shown as soon as there are frames for it
+  #level; // wanted level, shown as soon as its frames are decoded
 
-  /** Its first frame is there, with attributes, materials and textures. */
+  /** Makes a mesh with its first frame, attributes, materials and textures. */
   static async create(decoder, options = {}) {
     let mesh;
     try {
@@ -97,7 +97,7 @@ export class RLPCMesh extends Mesh {
     this.dispatchEvent({ type: "error", error, index });
   }
 
-  /** Makes the property that an animation moves; called for each animation of the stream. */
+  /** Makes the property that an animation moves. Called for each animation of the stream. */
   addPose() {
     const pose = new ClipPose();
     pose.failed = (error, index) => this.#failed(error, index);
@@ -131,7 +131,7 @@ export class RLPCMesh extends Mesh {
     this.#playback.seekSeconds(seconds);
   }
 
-  /** Sets time, and resolves once its frame is shown, or that of a later seek. */
+  /** Sets time, and resolves once its frame, or that of a later seek, is shown. */
   async seek(seconds) {
     this.time = seconds;
     while (!this.#isDisposed && !this.#playback.isReady) await this.#stream.arrival();
@@ -167,7 +167,7 @@ export class RLPCMesh extends Mesh {
     this.#playback.setSpeed(speed);
   }
 
-  /** Whether to show what is between two frames. */
+  /** Whether to interpolate between frames. */
   get interpolate() {
     return this.#playback.interpolates;
   }
@@ -187,16 +187,14 @@ export class RLPCMesh extends Mesh {
     this.#playback.setLoop(kLoopNames.get(loop));
   }
 
-  /** Goes on; with a clip, the name of one, or null for the whole sequence, plays that from its
-   * start. */
+  /** Resumes; with a clip, its name, or null for the whole sequence, plays that from its start. */
   play(clip) {
     if (clip !== undefined) this.#choose(this.#found(clip));
     this.#playback.play();
     return this;
   }
 
-  /** Returns a clip, which may be given by name, the first that has it, or be that of another mesh
-   * of the stream. */
+  /** Returns a clip, given by name (the first with it) or as a clip of another mesh of the stream. */
   #found(wanted) {
     if (wanted === null || this.clips.includes(wanted)) return wanted;
     const clip = this.clips.find(({ name, firstFrame, frames }) => name === wanted ||
@@ -218,14 +216,14 @@ export class RLPCMesh extends Mesh {
     return this;
   }
 
-  /** Back to the start. */
+  /** Stops and returns to the start. */
   stop() {
     this.pause();
     this.#choose(this.#clip);
     return this;
   }
 
-  /** To be called for each picture, with the seconds since the last. */
+  /** Advances playback. Must be called for each picture, with the seconds since the last one. */
   update(delta, camera) {
     if (this.#isDisposed) return false;
     this.#playback.ahead = this.#stream.ahead;
@@ -238,13 +236,13 @@ export class RLPCMesh extends Mesh {
     return this.#apply() || reply !== undefined;
   }
 
-  /** Shows what actions of an AnimationMixer have set; three.js calls it before each picture. */
+  /** Shows the state set by actions of an AnimationMixer; three.js calls it before each picture. */
   updateMatrixWorld(force) {
     this.#apply();
     super.updateMatrixWorld(force);
   }
 
-  /** Returns whether something else is shown than before. */
+  /** Updates the picture. Returns whether it has changed. */
   #apply() {
     if (this.#isDisposed) return false;
     const mix = this.#wanted;
@@ -286,13 +284,13 @@ export class RLPCMesh extends Mesh {
     return this;
   }
 
-  /** A new AnimationClip of a clip, its name, or null for the whole sequence: for a second action
-   * of a clip at the same time, say to fade it into itself. */
+  /** Makes an AnimationClip of a clip, its name, or null for the whole sequence: for a second
+   * simultaneous action of a clip, for example to fade it into itself. */
   makeAnimation(clip) {
     return this.#stream.animation(this.#found(clip));
   }
 
-  /** A mesh of the same stream with a time, and actions, of its own. */
+  /** Makes a mesh of the same stream with a separate time and actions. */
   clone(recursive) {
     return new RLPCMesh(this.#stream, { interpolate: this.interpolate }).copy(this, recursive);
   }

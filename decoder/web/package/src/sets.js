@@ -1,13 +1,13 @@
-// What the names of attributes mean (Table F-1), for three.js and for the player.
+// Meaning of the names of attributes (Table F-1), for three.js and for the player.
 
-/** Of attributes() of a decoder: whether it has normals that can be computed for each frame. */
+/** Returns whether attributes() of a decoder have normals that can be computed for each frame. */
 export function hasNormals(sets) {
   return ["unitVectors", "smoothing"].includes(sets.get("normal")?.kind);
 }
 
-/** Triangles by their material, ascending: { indices, groups }, groups with start, count and the
- * material. materialOf: the set `material`, or undefined: all have the first. Numbers of `most` and
- * more mean none: `most`. */
+/** Sorts triangles by material: { indices, groups }, groups with start, count and material.
+ * materialOf: the set `material`, or undefined if all have the first. Numbers from `most` on mean no
+ * material, and become `most`. */
 export function byMaterial(indices, materialOf, most) {
   const count = indices.length / 3;
   const hasMaterials = materialOf?.domain === "triangle" && materialOf.components === 1;

@@ -1,4 +1,4 @@
-// What a mesh shares with its clones: the decoder, decoded frames, levels of detail, animations.
+// State that a mesh shares with its clones: decoder, decoded frames, levels of detail, animations.
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage } from "three";
 
 import { clipAnimation } from "./clip_animations.js";
@@ -9,10 +9,10 @@ import { FrameStore } from "./frame_store.js";
 import { byMaterial } from "./sets.js";
 import { dispose, setAttributes } from "./three_look.js";
 
-const kMostAhead = 8; // frames that a mesh asks for before they are shown
+const kMostAhead = 8; // frames that a mesh requests before they are shown
 
-/** A geometry to be filled with frames. places: the vertex of the frames for each of its own, or
- * undefined; triangles and attributes are shared by all meshes that show this level. */
+/** Geometry to fill with frames. places: the vertex of the frames for each of its vertices, or
+ * undefined. All meshes that show this level share triangles and attributes. */
 class Level {
   constructor({ layers, distance, hysteresis, count, places }) {
     Object.assign(this, { layers, distance, hysteresis, count, places });
@@ -27,9 +27,9 @@ export class ShownStream {
     this.look = look;
     this.isDrawn = look !== undefined && !look.places; // frames have drawn vertices
     this.ownTextures = look?.gltf !== undefined;
-    this.materials = []; // to be disposed of with the last mesh
+    this.materials = []; // disposed of with the last mesh
     this.meshes = new Set();
-    this.waiting = []; // for the next frame
+    this.waiting = []; // callers that wait for the next frame
     const inFrames = this.isDrawn ? look.drawn.vertices.length : decoder.info.vertices;
     this.bytesPerFrame = (normals ? 24 : 12) * inFrames;
     this.frames = new FrameStore({
@@ -44,18 +44,18 @@ export class ShownStream {
       { normals: this.hasNormals, drawn: this.isDrawn, signal, into });
   }
 
-  /** How many frames each mesh asks for before they are shown. */
+  /** Number of frames that each mesh requests before they are shown. */
   get ahead() {
     const fair = Math.floor(this.frames.capacity / (4 * Math.max(1, this.meshes.size)));
     return Math.min(kMostAhead, Math.max(1, fair));
   }
 
-  /** Calls those who wait for a frame. */
+  /** Calls all that wait for a frame. */
   arrived() {
     for (const resolve of this.waiting.splice(0)) resolve();
   }
 
-  /** Resolves when a frame is there, or its error, or a mesh is disposed of. */
+  /** Resolves when a frame or its error arrives, or a mesh is disposed of. */
   arrival() {
     return new Promise((resolve) => {
       this.waiting.push(resolve);
@@ -71,7 +71,7 @@ export class ShownStream {
     return level;
   }
 
-  /** A geometry for one mesh, without groups if its material is one for all. */
+  /** Makes a geometry for one mesh, without groups if all triangles share a material. */
   geometryOf(level) {
     const geometry = new BufferGeometry();
     for (const name of this.hasNormals ? ["position", "normal"] : ["position"]) {
@@ -111,9 +111,9 @@ export class ShownStream {
     return level;
   }
 
-  /** A level without attributes. */
+  /** Makes a level without attributes. */
   #plain(indices, vertices, options) {
-    const whole = this.decoder.coarseVertices; // of a mesh that is coarse itself
+    const whole = this.decoder.coarseVertices; // set if the mesh itself is coarse
     const inFrames = whole ? indicesIn(whole, vertices) : vertices;
     const level = new Level({ ...options, count: vertices.length, places: inFrames });
     level.shared.setIndex(new BufferAttribute(indices, 1));
@@ -145,7 +145,7 @@ export class ShownStream {
     }
   }
 
-  /** Takes triangles and groups that dress() has given to a geometry of the finest level. */
+  /** Takes triangles and groups that dress() has set on a geometry of the finest level. */
   adopt({ index, groups }) {
     const { shared } = this.levels[0];
     shared.setIndex(index);
@@ -154,7 +154,7 @@ export class ShownStream {
     }
   }
 
-  /** Animations: one for each clip, or for the whole sequence if there are no clips. */
+  /** Makes an animation for each clip, or for the whole sequence without clips. */
   #animate() {
     const { clips, info } = this.decoder;
     this.slots = []; // { first, count } of each animation
@@ -162,7 +162,7 @@ export class ShownStream {
     if (clips.length === 0) this.animations.push(this.animation(null));
   }
 
-  /** A new animation of a clip, or of the whole sequence, with a slot of its own. */
+  /** Makes an animation of a clip, or of the whole sequence, with a separate slot. */
   animation(clip) {
     const { frames, frameRate } = this.decoder.info;
     const range = clip ?? { name: "sequence", firstFrame: 0, frames };
@@ -172,7 +172,7 @@ export class ShownStream {
     return clipAnimation(range, slot, frameRate, clipSeconds(range.frames, frameRate));
   }
 
-  /** To be called by a mesh that is disposed of; the last one ends everything. */
+  /** Removes a mesh that is disposed of; the last one ends everything. */
   leave(mesh) {
     this.meshes.delete(mesh);
     this.arrived();

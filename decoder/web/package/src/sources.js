@@ -1,5 +1,5 @@
-// Where the bytes of a stream come from. Each source has its size after open(), and puts bytes
-// into `ranges` with load(start, end, signal), which waits until they are there.
+// Sources of the bytes of a stream. Each has its size after open(), and puts bytes into `ranges` with
+// load(start, end, signal), which waits for them.
 import { isFile, urlOf } from "./address.js";
 import { ByteRanges } from "./byte_ranges.js";
 import { RlpcError } from "./error.js";
@@ -40,7 +40,7 @@ class BlobSource {
   }
 }
 
-/** A file, in node. */
+/** Source of a file, in node. */
 class FileSource {
   constructor(url) {
     this.url = new URL(url);
@@ -77,7 +77,8 @@ class FileSource {
   }
 }
 
-/** description: { bytes }, { blob }, { file } or { url, ... }; see HttpSource. progress(loaded, size). */
+/** Opens a source. description: { bytes }, { blob }, { file } or { url, ... }; see HttpSource.
+ * progress(loaded, size): callback. */
 export function openSource(description, progress) {
   const { bytes, blob, file } = description;
   if (bytes) return new BytesSource(bytes);
@@ -86,7 +87,8 @@ export function openSource(description, progress) {
   return new HttpSource(description, progress);
 }
 
-/** What a caller gives to RlpcDecoder.open(), as a description, which can be sent to a worker. */
+/** Describes the source that a caller passes to RlpcDecoder.open(), so that it can be sent to a
+ * worker. */
 export function describeSource(source, { headers, credentials, maxMemory }) {
   if (source instanceof Blob) return { blob: source };
   if (source instanceof ArrayBuffer) return { bytes: new Uint8Array(source) };

@@ -12,7 +12,7 @@ export class RLPCLoader extends Loader {
     this.options = {};
   }
 
-  /** Of RlpcDecoder.open() and of RLPCMesh. */
+  /** Sets options of RlpcDecoder.open() and RLPCMesh. */
   setOptions(options) {
     this.options = { ...this.options, ...options };
     return this;
@@ -30,7 +30,7 @@ export class RLPCLoader extends Loader {
     }).finally(() => this.manager.itemEnd(address));
   }
 
-  /** As loadAsync(), of any source that RlpcDecoder.open() takes. */
+  /** Loads from any source of RlpcDecoder.open(), as loadAsync() does from a URL. */
   async open(source, onProgress) {
     const { material, normals, attributes, textures, gltfLoader, interpolate, frameMemory,
       ...options } = this.options;

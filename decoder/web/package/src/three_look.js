@@ -1,4 +1,4 @@
-// What a mesh in three.js looks like: attributes of its vertices, and materials from the asset.
+// Look of a mesh in three.js: attributes of its vertices, and materials from the asset.
 import { BufferAttribute, Mesh, MeshStandardMaterial } from "three";
 
 import { coarseSurface } from "./coarse_surface.js";
@@ -10,21 +10,21 @@ const kUsualColour = 0xb4bcc4;
 
 const warnings = new Set();
 
-/** Once for all meshes. */
+/** Warns once for all meshes. */
 function warn(text) {
   if (!warnings.has(text)) console.warn(`RLPCLoader: ${text}`);
   warnings.add(text);
 }
 
-/** Where nothing tells another: grey, or white under colours of vertices. */
+/** Makes the default material: grey, or white under colours of vertices. */
 export function usualMaterial({ vertexColors = false, flatShading = false } = {}) {
   const color = vertexColors ? 0xffffff : kUsualColour;
   return new MeshStandardMaterial({ color, roughness: 0.6, vertexColors, flatShading });
 }
 
-/** The drawn mesh and, if they are wanted, the materials of a decoder; undefined if there are none,
- * or they have an error. isFlat: in glTF, meshes without normals are. Of a coarse mesh also places,
- * the vertex of its frames for each drawn one, and whole, the look of the whole mesh. */
+/** Loads the drawn mesh and, if wanted, the materials of a decoder; undefined if there are none, or
+ * they have an error. isFlat: true for meshes without normals, as in glTF. A coarse mesh also has
+ * places, the vertex of its frames for each drawn vertex, and whole, the look of the whole mesh. */
 export async function loadLook(decoder,
   { attributes = true, textures = true, material, gltfLoader }) {
   const { hasAttributes, hasAsset, damagedUnits } = decoder.info;
@@ -54,7 +54,7 @@ function coarseLook(whole, { indices, coarseVertices }) {
   return { ...whole, drawn, materialOf, places, whole };
 }
 
-/** The asset, a GLB; null if there is none, undefined if it cannot be decoded. */
+/** Loads the asset, a GLB; null if there is none, undefined if it cannot be decoded. */
 async function loadAsset(decoder) {
   try {
     return await decoder.asset();
@@ -65,7 +65,7 @@ async function loadAsset(decoder) {
   }
 }
 
-/** The asset, as three's GLTFLoader reads it; undefined if it cannot. */
+/** Reads the asset with GLTFLoader of three.js; undefined if it cannot. */
 async function loadMaterials(asset, textures, gltfLoader) {
   let loader = gltfLoader;
   if (!loader) {
@@ -96,26 +96,27 @@ function equalUvsOf(asset) {
   try {
     const equal = asset && glbJson(asset).extras?.equal_uv;
     return Array.isArray(equal) ? equal : [];
-  } catch { // of no GLB
+  } catch { // not a GLB
     return [];
   }
 }
 
-/** The same materials, as the text of a glTF file. */
+/** Returns the materials without textures, as the text of a glTF file. */
 function withoutTextures(glb) {
   const { asset, materials, extensionsUsed } = glbJson(glb);
   return JSON.stringify({ asset, materials, extensionsUsed },
     (key, value) => (key.endsWith("Texture") ? undefined : value));
 }
 
-/** As three.js names them: uv, uv1, uv2, uv3, color; undefined if it has no place for them. */
+/** Returns the name of an attribute in three.js: uv, uv1, uv2, uv3, color; undefined if it has none. */
 function nameInThree({ name, components }) {
   const uv = /^uv([0-3])$/.exec(name)?.[1];
   if (uv && components === 2) return uv === "0" ? "uv" : `uv${uv}`;
   return name === "colour0" && components >= 3 ? "color" : undefined;
 }
 
-/** equalUvs: of the look. Equal sets are one attribute with several names. */
+/** Sets the attributes of a geometry. equalUvs: of the look; equal sets are one attribute with several
+ * names. */
 export function setAttributes(geometry, { attributes }, equalUvs) {
   for (const set of attributes.values()) {
     const name = nameInThree(set);
@@ -128,8 +129,8 @@ export function setAttributes(geometry, { attributes }, equalUvs) {
   }
 }
 
-/** Sets the index and its groups, and returns the material or materials. `material`: of the
- * caller. Notes in the look which numbers of materials there are. */
+/** Sets the index and its groups, and returns the material or materials. material: of the caller.
+ * Records the numbers of materials in the look. */
 export async function dress(geometry, look, material) {
   const { drawn, materialOf, gltf } = look;
   const usual = { vertexColors: "color" in geometry.attributes,
@@ -150,7 +151,8 @@ export async function dress(geometry, look, material) {
   return materials;
 }
 
-/** As GLTFLoader would give it to a mesh with this geometry; undefined if it cannot. */
+/** Returns the material that GLTFLoader would assign to a mesh with this geometry; undefined if it
+ * cannot. */
 async function finalMaterial(geometry, parser, number) {
   try {
     const mesh = new Mesh(geometry, await parser.getDependency("material", number));

@@ -1,13 +1,13 @@
 // Texture coordinates across seams. Each side of a seam has its own; a triangle of a coarse mesh may
 // have corners on both. From one of its corners, this walks over the triangles of the whole mesh to
 // the others, and continues the texture coordinates of that corner: where the walk crosses a seam, a
-// similarity lays the texture of the far side beside that of the near one.
+// similarity aligns the texture of the far side with that of the near side.
 
-const kCrossingSteps = 1; // that a step across a seam counts more
+const kCrossingSteps = 1; // additional cost of a step across a seam
 const kMostSteps = 1 << 12; // triangles that one walk visits
-const kLargestScale = 4; // of a similarity; beyond it, sides are only moved
+const kLargestScale = 4; // largest scale of a similarity; beyond it, sides are only moved
 
-/** z -> factor * z + move, or of the conjugate of z; complex numbers. */
+/** Map z -> factor * z + move, or factor * conj(z) + move, of complex numbers. */
 const kIdentity = { re: 1, im: 0, x: 0, y: 0, isMirror: false };
 
 function apply({ re, im, x, y, isMirror }, u, v) {
@@ -15,7 +15,7 @@ function apply({ re, im, x, y, isMirror }, u, v) {
   return [re * u - im * w + x, re * w + im * u + y];
 }
 
-/** first(second(z)) */
+/** Returns the map first(second(z)). */
 function compose(first, second) {
   if (first === kIdentity) return second;
   if (second === kIdentity) return first;
@@ -25,7 +25,7 @@ function compose(first, second) {
     isMirror: first.isMirror !== second.isMirror };
 }
 
-/** Takes the edge from `from` to `to` of the far side to that of the near one: [u, v] each. */
+/** Returns the similarity that maps an edge of the far side to that of the near side: [u, v] each. */
 function similarity(near, far, isMirror) {
   const [[a, b], [c, d]] = [near, far].map(([from, to]) => [to[0] - from[0], to[1] - from[1]]);
   const e = isMirror ? -d : d;
@@ -38,16 +38,16 @@ function similarity(near, far, isMirror) {
 }
 
 export class Unfolding {
-  /** drawn: of a decoder; uvs: values of its sets of texture coordinates. */
+  /** { vertices, indices }: drawn() of a decoder; uvs: values of its sets of texture coordinates. */
   constructor({ vertices, indices }, uvs) {
     Object.assign(this, { vertices, indices, uvs });
     this.opposite = this.#opposites();
-    this.visited = new Uint32Array(indices.length / 3); // by which walk
+    this.visited = new Uint32Array(indices.length / 3); // last walk that visited each triangle
     this.numWalks = 0;
   }
 
-  /** For each corner k of a triangle, that of the neighbour over its edge to the next corner; -1:
-   * none. */
+  /** Returns, for each corner, the corner at which the same edge begins in the neighbouring triangle;
+   * -1: none. */
   #opposites() {
     const { indices, vertices } = this;
     const opposite = new Int32Array(indices.length).fill(-1);
@@ -72,8 +72,8 @@ export class Unfolding {
     return corner % 3 === 2 ? corner - 2 : corner + 1;
   }
 
-  /** Walks from triangles to two vertices of the stream. Returns { steps, ends }: for each of these
-   * the drawn vertex, and a map for each set that continues texture coordinates from the start;
+  /** Walks from triangles to two vertices of the stream. Returns { steps, ends }: ends has, for each
+   * vertex, the drawn vertex, and a map per set that continues texture coordinates from the start;
    * undefined if the walk is too long. */
   walk(triangles, targets) {
     const walk = ++this.numWalks;
@@ -109,7 +109,7 @@ export class Unfolding {
     (buckets[at] ??= []).push([Math.floor(other / 3), beyond]);
   }
 
-  /** The maps of the neighbour over an edge; the same ones if it is no seam. */
+  /** Returns the maps of the neighbour across an edge; unchanged if the edge is not a seam. */
   #beyond(corner, other, maps) {
     const { indices, vertices } = this;
     const near = [indices[corner], indices[this.#next(corner)]];
@@ -128,7 +128,7 @@ export class Unfolding {
     return result;
   }
 
-  /** Whether the triangle of a corner turns left in the texture. */
+  /** Returns whether the triangle of a corner turns left in the texture. */
   #turns(values, corner) {
     const first = corner - corner % 3;
     const [a, b, c] = [0, 1, 2].map((k) => this.indices[first + k]);
@@ -137,7 +137,8 @@ export class Unfolding {
   }
 }
 
-/** Texture coordinates of a drawn vertex under a map of walk(); undefined if it changes nothing. */
+/** Returns texture coordinates of a drawn vertex under a map of walk(); undefined if it changes
+ * nothing. */
 export function mapped(map, values, drawn) {
   return map === kIdentity ? undefined : apply(map, values[2 * drawn], values[2 * drawn + 1]);
 }

@@ -1,16 +1,16 @@
-// Attributes, drawn vertices and the asset of a stream: what wasm/attribute_exports.cpp gives.
+// Attributes, drawn vertices and the asset of a stream, from wasm/attribute_exports.cpp.
 import { gathered } from "./gathered.js";
 
 const kDomains = ["vertex", "corner", "triangle"];
 const kKinds = ["integers", "unitVectors", "floats", "smoothing"];
 
 export class WasmAttributes {
-  /** stream: of WasmDecoder, opened. */
+  /** stream: an open stream of WasmDecoder. */
   constructor(stream, { num_triangles: numTriangles, num_vertices: numVertices }) {
     Object.assign(this, { stream, numTriangles, numVertices });
   }
 
-  /** To be called before all below but asset(). */
+  /** Decodes the attributes. Must be called before the functions below, except asset(). */
   decode() {
     this.stream.check("stream_decode_attributes");
   }
@@ -36,7 +36,7 @@ export class WasmAttributes {
     };
   }
 
-  /** Vertices with one value of each set. */
+  /** Makes vertices with one value of each set. */
   drawn() {
     const { stream } = this;
     const count = this.ask("stream_num_drawn");
@@ -53,14 +53,14 @@ export class WasmAttributes {
     };
   }
 
-  /** Of the value of each drawn vertex. */
+  /** Returns the place of the value of each drawn vertex. */
   placesOf(set, count) {
     const address = this.ask("stream_drawn_values", set) >>> 0;
     return address === 0 ? undefined
       : new Uint32Array(this.stream.decoder.exports.memory.buffer, address, count);
   }
 
-  /** Of the frame that was decoded last, at the drawn vertices. */
+  /** Returns an array of the frame that was decoded last, at the drawn vertices. */
   ofFrame(name, into) {
     const { stream } = this;
     this.numDrawn ??= this.ask("stream_num_drawn");
@@ -74,7 +74,7 @@ export class WasmAttributes {
     return stream.ofFrame(name, this.numVertices, this.vertices, into);
   }
 
-  /** Null if the stream has none. */
+  /** Reads the asset; null if the stream has none. */
   asset() {
     this.stream.check("stream_read_asset");
     const size = this.ask("stream_asset_size");

@@ -1,9 +1,9 @@
-// The decoder of wasm/exports.cpp, as JavaScript sees it. Nothing here waits: a call that needs
-// bytes which are not loaded throws MissingBytes, and can be made again once they are.
+// JavaScript interface of the decoder of wasm/exports.cpp. Nothing here waits: a call that needs
+// bytes that are not loaded throws MissingBytes, and can be repeated once they are.
 import { RlpcError, kKinds } from "./error.js";
 import { gathered } from "./gathered.js";
 
-/** What frames have of each vertex, three numbers: its type, and the function that gives it. */
+/** Arrays of frames, three numbers per vertex: the type, and the function that returns them. */
 const kFrameArrays = {
   integers: [Int32Array, "stream_positions"],
   positions: [Float32Array, "stream_floats"],
@@ -19,9 +19,9 @@ export class MissingBytes extends Error {
   }
 }
 
-/** An instance of the WebAssembly module, for one stream. */
+/** Instance of the WebAssembly module, for one stream. */
 export class WasmDecoder {
-  /** module: a WebAssembly.Module, or its bytes. */
+  /** Makes a decoder. module: a WebAssembly.Module, or its bytes. */
   static async create(module) {
     const decoder = new WasmDecoder();
     const result = await WebAssembly.instantiate(module, {
@@ -52,7 +52,7 @@ export class WasmDecoder {
     return false;
   }
 
-  /** The stream of `size` bytes, of which `ranges` has those that are loaded. */
+  /** Makes a stream of `size` bytes; `ranges` has those that are loaded. */
   stream(ranges, size, options) {
     this.ranges = ranges;
     return new WasmStream(this, size, options);
@@ -63,7 +63,7 @@ function outOfMemory() {
   return new RlpcError("out of memory", { kind: "limit" });
 }
 
-/** Frames of one stream, in any order. Arrays that it returns are copies. */
+/** Decodes frames of one stream in any order. Arrays that it returns are copies. */
 class WasmStream {
   constructor(decoder, size, { maxMemory, coarseLayers, verifyHashes, skipDamagedUnits }) {
     this.decoder = decoder;
@@ -80,8 +80,7 @@ class WasmStream {
     this.check("stream_open");
   }
 
-  /** The header, and what is known of the sequence. The number of frames of an open-ended stream
-   * is at its end. */
+  /** Returns the header and the number of frames, which an open-ended stream has at its end. */
   describe() {
     this.decoder.missing = undefined;
     const header = JSON.parse(this.text(this.ask("stream_describe")));
@@ -95,7 +94,7 @@ class WasmStream {
     return header;
   }
 
-  /** Offsets where GOFs and shared rigs begin, and the end of the last. */
+  /** Returns the offsets of GOFs and shared rigs, and the end of the last one. */
   landmarks() {
     this.check("stream_find_index");
     const count = this.ask("stream_num_landmarks");
@@ -106,7 +105,7 @@ class WasmStream {
     return this.copy(Uint32Array, "stream_triangles", 3 * numTriangles);
   }
 
-  /** Of a coarse mesh: the index of each vertex in the whole mesh. */
+  /** Returns the index in the whole mesh of each vertex of a coarse mesh. */
   coarseVertices(numVertices) {
     return this.copy(Uint32Array, "stream_coarse_vertices", numVertices);
   }
@@ -120,20 +119,20 @@ class WasmStream {
     this.check("stream_decode", frame);
   }
 
-  /** After the last frame: checks the rest of the stream. */
+  /** Checks the rest of the stream, after the last frame. */
   finish() {
     this.check("stream_finish");
   }
 
-  /** Of the frame that was decoded last. places: the vertex of each one that is wanted, or
-   * undefined; `into` may be an array to fill. */
+  /** Returns an array of the frame that was decoded last. places: vertices to return, or undefined for
+   * all; into: an array to fill, or undefined. */
   ofFrame(name, numVertices, places, into) {
     const [Type, source] = kFrameArrays[name];
     if (!places) return this.copy(Type, source, 3 * numVertices, into);
     return gathered(this.view(Type, source, 3 * numVertices), places, 3, into);
   }
 
-  /** On the grid: least and most x, y, z. */
+  /** Returns the minima and maxima of x, y, z, in grid units. */
   extent() {
     return this.copy(Int32Array, "stream_extent", 6);
   }
@@ -146,7 +145,7 @@ class WasmStream {
     return this.ask("stream_compared_frames");
   }
 
-  /** The error of a frame that was decoded but does not fit its hash. */
+  /** Returns the error of a frame that was decoded but does not match its hash. */
   hashError() {
     return this.ask("stream_hash_differs") ? this.error() : undefined;
   }
@@ -157,7 +156,7 @@ class WasmStream {
     return array;
   }
 
-  /** Until the next call of the decoder. */
+  /** Returns a view of memory, valid until the next call of the decoder. */
   view(Type, name, length, ...args) {
     const address = this.ask(name, ...args) >>> 0;
     return length > 0 ? new Type(this.decoder.exports.memory.buffer, address, length) : new Type();
@@ -174,7 +173,7 @@ class WasmStream {
     try {
       return this.decoder.exports[name](...args);
     } catch (failure) {
-      // The only thing that stops it on the way; its memory cannot be trusted any more.
+      // A trap is the only failure inside a call; afterwards its memory is unusable.
       if (!(failure instanceof WebAssembly.RuntimeError)) throw failure;
       this.decoder.isBroken = true;
       throw outOfMemory();
@@ -186,7 +185,7 @@ class WasmStream {
     return this.call(name, this.stream, ...args);
   }
 
-  /** The same, for an export that returns true or leaves an error. */
+  /** Calls an export that returns true, or false and sets an error, which is thrown. */
   check(name, ...args) {
     this.decoder.missing = undefined;
     if (!this.ask(name, ...args)) throw this.decoder.missing ?? this.error();

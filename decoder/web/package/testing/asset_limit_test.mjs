@@ -42,7 +42,7 @@ test("WhatIsNoGlbIsLeftToItsReader", () => {
   assert.doesNotThrow(() => checkAsset(cut, 1e4));
 });
 
-/** Objects as memory, by the engine that runs this. */
+/** Returns the memory of objects in the engine that runs this. */
 test("TheBoundHolds", () => {
   const items = ["[]", "{}", "0", '""', "[[]]", '{"a":0}', '{"a":{"b":[]}}', '"abcdefgh"', "1.5"];
   for (const item of items) {

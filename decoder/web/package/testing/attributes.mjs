@@ -1,4 +1,4 @@
-// Run by package_test.py: attributes of streams, and what follows from them, in node.
+// Run by package_test.py: attributes of streams, and drawn vertices, in node.
 //
 //   node attributes.mjs PACKAGE_FOLDER STREAM...   a line of JSON for each stream
 import assert from "node:assert/strict";
@@ -19,7 +19,7 @@ function valueAt({ domain, corners }, decoder, corner) {
   return domain === "vertex" ? decoder.indices[corner] : Math.floor(corner / 3);
 }
 
-/** Each corner has its position and its values. */
+/** Checks that each corner has its position and its values. */
 async function checkDrawn(decoder, sets) {
   const { vertices, indices, attributes } = await decoder.drawn();
   assert.equal(indices.length, decoder.indices.length);

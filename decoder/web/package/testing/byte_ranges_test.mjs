@@ -1,4 +1,4 @@
-// Run by package_test.py: the parts of a stream that are loaded.
+// Run by package_test.py: loaded parts of a stream.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 

@@ -1,6 +1,6 @@
 // node clocks.mjs MODULES PACKAGE STREAM CASES.json
 //
-// Shows clips at times in every way that the package has. A case: { clip (an index, -1: the whole
+// Shows clips at times in every way of the package. A case: { clip (an index, -1: the whole
 // sequence), seconds, repeats, speed }. Writes JSON: for each case, by way, { frame, place, xyz }, with
 // frames counted from the start of the sequence, and the first coordinates of the mesh.
 import fs from "node:fs";
@@ -27,20 +27,20 @@ function shown(place) {
   return { frame: mesh.frame, place, xyz: [...mesh.geometry.attributes.position.array.slice(0, 12)] };
 }
 
-/** The rule alone. */
+/** Applies the rule directly. */
 function byRule({ firstFrame, frames }, { seconds, repeats }) {
   const place = placeAt(seconds * decoder.info.frameRate, frames, repeats ? "repeat" : "once");
   return { frame: firstFrame + nearestFrame(place), place: firstFrame + place };
 }
 
-/** mesh.time, which is a place in the clip. */
+/** Sets mesh.time, a place in the clip. */
 async function bySeeking({ firstFrame }, { clip, seconds }) {
   mesh.play(clip < 0 ? null : mesh.clips[clip]).pause();
   await mesh.seek(seconds);
   return shown(firstFrame + mesh.time * decoder.info.frameRate);
 }
 
-/** mesh.update(), in pictures of irregular length. */
+/** Calls mesh.update() for pictures of irregular length. */
 async function byPlaying({ firstFrame }, { clip, seconds, repeats, speed }) {
   mesh.loop = repeats ? THREE.LoopRepeat : THREE.LoopOnce;
   mesh.speed = speed;
@@ -61,7 +61,7 @@ async function byPlaying({ firstFrame }, { clip, seconds, repeats, speed }) {
   return result;
 }
 
-/** An action of an AnimationMixer. */
+/** Runs an action of an AnimationMixer. */
 async function byMixer(_, { clip, seconds, repeats }) {
   mesh.play(null).pause();
   const mixer = new THREE.AnimationMixer(mesh);

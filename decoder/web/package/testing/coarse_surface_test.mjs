@@ -5,7 +5,7 @@ import { test } from "node:test";
 import { coarseSurface, indicesIn } from "../src/coarse_surface.js";
 import { random } from "./fake_decoder.mjs";
 
-/** Two triangles for each cell of a grid, with vertex(row, column). */
+/** Returns two triangles per cell of a grid, with vertex(row, column). */
 function gridTriangles(rows, columns, vertex) {
   const triangles = [];
   for (let r = 0; r < rows; ++r) {
@@ -17,8 +17,8 @@ function gridTriangles(rows, columns, vertex) {
   return Uint32Array.from(triangles);
 }
 
-/** A tube, closed around: u jumps from 1 to 0 at a seam. Drawn vertices are ascending by vertex, those
- * of the seam twice. */
+/** Makes a closed tube: u jumps from 1 to 0 at a seam. Drawn vertices ascend by vertex, with those of
+ * the seam twice. */
 function tube(rows, columns) {
   const vertices = [];
   const uv = [];
@@ -37,7 +37,7 @@ function tube(rows, columns) {
     { name: "uv0", components: 2, values: Float32Array.from(uv) }]]) };
 }
 
-/** Every step-th row and column of the tube, the first at `shift`. */
+/** Returns every step-th row and column of the tube, the first one at `shift`. */
 function coarseTube(rows, columns, step, shift = 0) {
   const vertices = [];
   for (let r = 0; r <= rows; r += step) {
@@ -75,7 +75,7 @@ test("NoTriangleCrossesASeam", () => {
   }
 });
 
-/** Places of u and the vertex that it is near to: equal, but for whole turns. */
+/** Returns the distance of u from the place of a vertex, without whole turns. */
 function turnsApart(u, column, columns) {
   const apart = u - column / columns;
   return Math.abs(apart - Math.round(apart));
@@ -88,7 +88,7 @@ test("TextureCoordinatesGoOnAcrossASeamThatIsNotKept", () => {
     const rows = step * (1 + Math.floor(4 * next()));
     const columns = step * (4 + Math.floor(5 * next()));
     const drawn = tube(rows, columns);
-    // Columns beside the seam, which is at 0.
+    // Columns next to the seam, which is at 0.
     const shift = 1 + Math.floor((step - 1) * next());
     const coarse = coarseTube(rows, columns, step, shift);
     const { places, indices, attributes } = coarseSurface({ drawn }, coarse);
@@ -130,7 +130,7 @@ test("ATurnedAndMirroredSideIsContinued", () => {
       drawnOf.get(`${r} ${c + half * side} ${side}`))]);
     const drawn = { vertices: Uint32Array.from(vertices), indices: Uint32Array.from(triangles),
       attributes: new Map([["uv0", { name: "uv0", components: 2, values: Float32Array.from(uv) }]]) };
-    // One that has two corners on the left, and one on the right.
+    // A triangle with two corners on the left, and one on the right.
     const corners = [[1, 1], [3, 6], [5, 2]].map(([r, c]) => r * (size + 1) + c);
     const coarse = { vertices: Uint32Array.from(corners).sort(), indices: Uint32Array.of(0, 1, 2) };
     const { attributes, indices, vertices: places } = coarseSurface({ drawn }, coarse);
@@ -164,7 +164,7 @@ test("TrianglesKeepTheirMaterial", () => {
 });
 
 test("ChartsThatTouchAreNotMixed", () => {
-  // Two squares with an edge between them, each a chart of its own, far apart in the texture.
+  // Two squares that share an edge, each a separate chart, far apart in the texture.
   const drawn = {
     vertices: Uint32Array.of(0, 1, 1, 2, 3, 4, 4, 5),
     indices: Uint32Array.of(0, 1, 4, 4, 1, 5, 2, 3, 6, 6, 3, 7),

@@ -1,6 +1,6 @@
-// A decoder for tests of RLPCMesh: frames that follow from their index, as late as the test wants.
+// Decoder for tests of RLPCMesh: frames are functions of their index, and as late as the test wants.
 
-/** Numbers from 0 to 1. */
+/** Makes a generator of numbers from 0 to 1. */
 export function random(seed) {
   let state = seed >>> 0;
   return () => {
@@ -11,7 +11,7 @@ export function random(seed) {
 
 export const settled = () => new Promise((next) => setImmediate(next));
 
-/** Positions (or normals) of a frame, 32-bit floats. */
+/** Returns positions (or normals) of a frame, 32-bit floats. */
 export function positionsOf(index, vertices) {
   const next = random(index * 7919 + 1);
   return Float32Array.from({ length: 3 * vertices }, () => 20 * next() - 10);
@@ -44,8 +44,8 @@ export class FakeDecoder {
     this.clips = clips;
     this.indices = Uint32Array.of(0, 1, 2);
     this.decoded = []; // indices, in order
-    this.numAllocated = 0; // frames without arrays to fill
-    this.numInUse = 0; // arrays that callers have
+    this.numAllocated = 0; // frames decoded without arrays to reuse
+    this.numInUse = 0; // arrays that callers hold
     this.mostInUse = 0;
     this.failing = new Set();
     this.isClosed = false;
@@ -68,13 +68,13 @@ export class FakeDecoder {
       this.mostInUse = Math.max(this.mostInUse, ++this.numInUse);
     }
     const positions = positionsOf(index, vertices);
-    // Arrays that were handed over cannot be used any more, as with a worker.
+    // Transferred arrays can no longer be used, as with a worker.
     if (into) structuredClone(into.positions.buffer, { transfer: [into.positions.buffer] });
     return { index, positions, bounds: boundsOf(positions),
       normals: normals ? normalsOf(index, vertices) : undefined };
   }
 
-  /** Answers so many requests that wait. */
+  /** Answers `count` waiting requests. */
   async serve(count = 1) {
     for (let i = 0; i < count; ++i) {
       await settled();

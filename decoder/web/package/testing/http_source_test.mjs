@@ -1,4 +1,4 @@
-// Run by package_test.py: servers that refuse, hide or send more than they should.
+// Run by package_test.py: servers that reject requests, hide headers or send too much.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -6,7 +6,7 @@ import { HttpSource } from "../src/http_source.js";
 
 const kStream = Uint8Array.from({ length: 40000 }, (_, i) => i % 251);
 
-/** Answers requests as `answer` says, and counts them. */
+/** Answers requests with `answer`, and counts them. */
 function serve(answer) {
   const methods = [];
   globalThis.fetch = async (_, { method, headers }) => {
@@ -16,7 +16,7 @@ function serve(answer) {
   return methods;
 }
 
-/** A body in pieces of 10,000 bytes; sent: tells how many were taken, and whether it was
+/** Makes a body in pieces of 10,000 bytes. sent: counts those taken, and records whether it was
  * cancelled. */
 function inPieces(sent = { pieces: 0, isCancelled: false }) {
   return new ReadableStream({
@@ -84,7 +84,7 @@ test("ClosingEndsWhatIsLoaded", async () => {
 
 test("ABodyOfMoreThanTheLimitIsCancelled", async () => {
   const sent = { pieces: 0, isCancelled: false };
-  serve(() => new Response(inPieces(sent))); // of unknown length
+  serve(() => new Response(inPieces(sent))); // unknown length
   await assert.rejects(source(15000).open(), { kind: "limit", message: /maxMemory, 15000 bytes/ });
   assert.equal(sent.isCancelled, true);
   assert.ok(sent.pieces <= 3, `${sent.pieces} pieces were loaded`);
@@ -97,7 +97,7 @@ test("AStreamThatIsShorterThanToldIsAnError", async () => {
   await assert.rejects(whole.load(40000, 40001), { kind: "network", message: /40000 bytes instead/ });
 });
 
-/** A body without end; sent: as in inPieces(). */
+/** Makes a body without end. sent: see inPieces(). */
 function endless(sent) {
   return new ReadableStream({
     pull(controller) {
@@ -110,7 +110,7 @@ function endless(sent) {
   }, { highWaterMark: 0 });
 }
 
-/** Headers of a range, of a stream of `size` bytes. */
+/** Returns headers of a range of a stream of `size` bytes. */
 function rangeOf(start, end, size = 1e9) {
   return { "content-range": `bytes ${start}-${end - 1}/${size}` };
 }

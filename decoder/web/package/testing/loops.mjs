@@ -1,8 +1,8 @@
 // node loops.mjs MODULES PACKAGE STREAM SOURCE.glb DECODED.glb
 //
 // Plays the clips of a stream with RLPCMesh, and those of both files with three's AnimationMixer, at
-// the same moments. Writes JSON: the durations of each clip, and how far the times in it are apart
-// at most, in seconds, for each kind of loop.
+// the same moments. Writes JSON: the durations of each clip, and the largest difference of the times
+// in it, in seconds, for each kind of loop.
 import fs from "node:fs";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
@@ -15,7 +15,7 @@ const { GLTFLoader } = await load(modules, "three/examples/jsm/loaders/GLTFLoade
 const { RlpcDecoder } = await load(packed, "src/index.js");
 const { RLPCMesh } = await load(packed, "src/three.js");
 
-console.warn = () => {}; // of what node cannot show
+console.warn = () => {}; // about features that node lacks
 
 async function animations(file) {
   const bytes = fs.readFileSync(file);
@@ -35,7 +35,7 @@ const settled = async () => {
   for (let i = 0; i < 8; ++i) await new Promise((next) => setImmediate(next));
 };
 
-/** Pictures at moments that are irregular, for so many turns. */
+/** Plays irregular pictures for a number of passes. Returns the largest difference. */
 async function furthest(index, loop, turns) {
   const others = [decodedOnes[index], sourceOnes[index]];
   for (const { action } of others) {
@@ -57,10 +57,10 @@ async function furthest(index, loop, turns) {
     await settled();
     for (const { mixer, action } of others) {
       mixer.update(delta);
-      // On its way back, the action counts its time from the end.
+      // On the way back, the action counts its time from the end.
       const isBack = loop === THREE.LoopPingPong && Math.floor(seconds / duration) % 2 === 1;
       const off = Math.abs(mesh.time - (isBack ? duration - action.time : action.time));
-      // The end of a turn is the start of the next.
+      // The end of a pass is the start of the next.
       apart = Math.max(apart, loop === THREE.LoopOnce ? off : Math.min(off, Math.abs(duration - off)));
     }
   }

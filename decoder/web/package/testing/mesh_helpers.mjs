@@ -1,4 +1,4 @@
-// What tests of RLPCMesh have in common.
+// Helpers of the tests of RLPCMesh.
 import assert from "node:assert/strict";
 
 import { Box3, Vector3 } from "three";
@@ -18,7 +18,7 @@ export function positions(mesh) {
   return mesh.geometry.attributes.position.array;
 }
 
-/** The linear mix of two frames, in double precision. */
+/** Interpolates two frames linearly, in double precision. */
 export function between(place, vertices) {
   const before = Math.floor(place + 1e-6);
   const fraction = Math.max(0, place - before);

@@ -1,4 +1,4 @@
-// Run by package_test.py: what RLPCMesh shows between frames, and under actions of an AnimationMixer.
+// Run by package_test.py: pictures of RLPCMesh between frames, and under actions of an AnimationMixer.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -81,7 +81,7 @@ for (const speed of [1, -1]) {
   }
 }
 
-/** The same actions on an object whose values are all positions: what three.js itself makes of it. */
+/** Runs the same actions on an object whose values are all positions, by three.js itself. */
 class Reference {
   constructor(mesh) {
     this.root = new Object3D();
@@ -97,7 +97,7 @@ class Reference {
   }
 }
 
-/** Does something random to an action of both. */
+/** Applies a random change to an action of both. */
 function act(next, both) {
   const [chosen, other] = [Math.floor(2 * next()), Math.floor(2 * next())];
   const kind = Math.floor(9 * next());

@@ -1,4 +1,4 @@
-// Run by package_test.py: which frames src/playback.js shows, with a decoder that is late.
+// Run by package_test.py: frames that src/playback.js shows with a late decoder.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -153,7 +153,7 @@ for (const [frames, delay] of [[2, 0], [3, 0], [3, 1], [7, 0], [7, 1], [7, 5]]) 
     const shown = await bench.run(400);
     assert.deepEqual(shown, shown.map((_, i) => i % frames));
     assert.ok(shown.length > 60, `${shown.length}`);
-    // What is not shown yet is on its way, or waits: each other frame at most once.
+    // Frames that are not shown yet are requested or ready: each other frame at most once.
     assert.ok(bench.numAsked - shown.length < frames, `${bench.numAsked}`);
     assert.equal(bench.discarded, 0);
   });
@@ -169,7 +169,7 @@ test("AStillMeshIsShownOnceAndDoesNotPlay", async () => {
   assert.equal(bench.numAsked, 1);
 });
 
-/** Frames are there as soon as they are asked for, like those of a fast decoder. */
+/** Makes a playback whose frames are ready at once, as with a fast decoder. */
 function playing(count, frameRate, loop) {
   const playback = new Playback({ frames: count, frameRate, ahead: 8,
     request: (index) => Promise.resolve({ index }) });
@@ -180,7 +180,8 @@ function playing(count, frameRate, loop) {
 
 const settled = () => new Promise((next) => setImmediate(next));
 
-/** How long each frame is shown, in intervals, by how often it is on pictures of `fine` an interval. */
+/** Returns the time for which each frame is shown, in intervals, counted on `fine` pictures per
+ * interval. */
 async function shares(playback, intervals, fine) {
   const shares = new Map();
   await settled();
@@ -194,7 +195,7 @@ async function shares(playback, intervals, fine) {
 
 test("ALoopLastsOneIntervalLessThanItsFrames", async () => {
   const turns = 3;
-  const last = 10; // the same pose as 0: the two of them together take one interval
+  const last = 10; // same pose as 0: together they take one interval
   const shown = await shares(playing(last + 1, 32, "repeat"), turns * last, 64);
   for (let k = 1; k < last; ++k) assert.ok(Math.abs(shown.get(k) - turns) < 0.1, `${k}`);
   assert.ok(Math.abs(shown.get(0) + shown.get(last) - turns) < 0.1);
@@ -215,7 +216,7 @@ test("TheLastPoseIsThatOfTheEnd", async () => {
   assert.equal(playback.duration, 10 / 32);
 });
 
-/** A generator of numbers below n. */
+/** Makes a generator of numbers below n. */
 function random(seed) {
   let state = seed;
   return (n) => {
@@ -224,7 +225,8 @@ function random(seed) {
   };
 }
 
-// What three's AnimationAction makes of a clip that lasts (n - 1) / frameRate.
+// Returns the time that AnimationAction of three.js computes in a clip that lasts
+// (n - 1) / frameRate.
 function timeInClip(seconds, duration, loop) {
   if (loop === "once") return Math.min(seconds, duration);
   const turn = Math.floor(seconds / duration);
@@ -261,7 +263,7 @@ for (const loop of ["repeat", "once", "pingpong"]) {
       playback.tick(0);
       await settled();
       for (let j = 0; j < 60; ++j) {
-        const delta = below(1000) / 2000 / frameRate; // one frame at most, so that none is late
+        const delta = below(1000) / 2000 / frameRate; // at most one frame, so that none is late
         playback.tick(delta);
         await settled();
         seconds += delta;
@@ -276,7 +278,7 @@ for (const loop of ["repeat", "once", "pingpong"]) {
   });
 }
 
-/** How far the time of a playback is from that of a clip, in intervals. */
+/** Returns the difference between the times of a playback and a clip, in intervals. */
 function timeOff({ seconds, frameRate, count, speed }, played, loop) {
   const duration = (count - 1) / frameRate;
   const within = timeInClip(played, duration, loop);
@@ -348,7 +350,7 @@ test("TimesAreNumbersAndDoNotGoBack", async () => {
   for (const wrong of [NaN, undefined]) {
     assert.throws(() => playback.seekSeconds(wrong), RangeError);
   }
-  playback.tick(-5); // pictures may have been asked for before the clock was read
+  playback.tick(-5); // pictures may have been requested before the clock was read
   assert.ok(Math.abs(playback.seconds - 0.12) < 1e-9);
 });
 

@@ -1,5 +1,5 @@
-// Run by package_test.py: frames that meshes of a stream share: clones, limits of memory, frames that
-// are late or damaged, and the end.
+// Run by package_test.py: frames that meshes of a stream share: clones, limits of memory, late or
+// damaged frames, and the end.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -39,7 +39,7 @@ test("FramesThatAreNotThereYetComeLater", async () => {
   action.paused = true;
   mixer.update(0);
   mesh.updateMatrixWorld();
-  assert.deepEqual(positions(mesh), before); // nothing of the clip is there
+  assert.deepEqual(positions(mesh), before); // no frame of the clip is decoded
   await decoder.serve();
   mesh.updateMatrixWorld();
   assert.deepEqual(positions(mesh), positionsOf(14, 5));

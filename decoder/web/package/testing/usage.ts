@@ -1,4 +1,4 @@
-// Compiled by package_test.py, not run: all of the package, with its types.
+// Compiled by package_test.py, not run: uses the whole package with its types.
 import { AnimationMixer, LoopOnce, MeshBasicMaterial, PerspectiveCamera, Scene } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { Playback, RlpcDecoder, RlpcError, type Attribute, type DrawnMesh, type Frame } from "rlpc";

@@ -6,7 +6,7 @@ import { ByteRanges } from "../src/byte_ranges.js";
 import { WasmDecoder } from "../src/wasm_decoder.js";
 import { WasmAttributes } from "../src/wasm_attributes.js";
 
-/** A decoder whose export `name` traps, as all do when memory cannot grow. */
+/** Makes a decoder whose export `name` traps, as all do when memory cannot grow. */
 function without(name) {
   const decoder = new WasmDecoder();
   const memory = { buffer: new ArrayBuffer(64) };
