@@ -1,5 +1,5 @@
-// RLPC in C: clips, named parts of a sequence, for rlpc_decode.h and rlpc_encode.h. C99 and
-// C++.
+// RLPC in C: clips, named parts of a sequence, for rlpc_c_decoder.h and rlpc_c_encoder.h. C99
+// and C++.
 #pragma once
 
 #include <stdint.h>

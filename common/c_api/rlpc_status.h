@@ -1,4 +1,4 @@
-// RLPC in C: status codes of rlpc_decode.h and rlpc_encode.h. C99 and C++.
+// RLPC in C: status codes of rlpc_c_decoder.h and rlpc_c_encoder.h. C99 and C++.
 #pragma once
 
 // RLPC_API precedes each function. Programs that link a static library define RLPC_STATIC,

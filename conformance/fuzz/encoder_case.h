@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/codec/mesh/mesh.h"
-#include "encoder/c_api/rlpc_encode.h"
+#include "encoder/c_api/rlpc_c_encoder.h"
 #include "encoder/rlpc_encoder.h"
 
 namespace rlpc {

@@ -13,7 +13,7 @@
 
 #include "conformance/rlpcval/validator.h"
 #include "conformance/testing/small_animation.h"
-#include "decoder/c_api/rlpc_decode.h"
+#include "decoder/c_api/rlpc_c_decoder.h"
 
 namespace rlpc {
 namespace {

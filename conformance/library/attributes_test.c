@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "decoder/c_api/rlpc_decode.h"
+#include "decoder/c_api/rlpc_c_decoder.h"
 
 static int failures = 0;
 static const char* path = "";

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "decoder/c_api/rlpc_decode.h"
+#include "decoder/c_api/rlpc_c_decoder.h"
 
 #define SHOWN 12
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-HEADER = "decoder/c_api/rlpc_decode.h"
+HEADER = "decoder/c_api/rlpc_c_decoder.h"
 FUNCTION = "size_t rlpc_decoder_bytes(void);"
 # Definitions, and what stands before the function.
 CASES = {

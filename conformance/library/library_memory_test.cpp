@@ -6,7 +6,7 @@
 
 #include "conformance/testing/count_memory.h"
 #include "conformance/testing/waving_strip.h"
-#include "decoder/c_api/rlpc_decode.h"
+#include "decoder/c_api/rlpc_c_decoder.h"
 
 namespace {
 

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "decoder/c_api/rlpc_decode.h"
+#include "decoder/c_api/rlpc_c_decoder.h"
 
 namespace {
 

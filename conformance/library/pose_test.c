@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "conformance/testing/c_testing.h"
-#include "decoder/c_api/rlpc_decode.h"
-#include "encoder/c_api/rlpc_encode.h"
+#include "decoder/c_api/rlpc_c_decoder.h"
+#include "encoder/c_api/rlpc_c_encoder.h"
 
 #define RINGS 40
 #define AROUND 12

@@ -13,7 +13,7 @@
 
 #include "conformance/testing/waving_strip.h"
 #include "decoder/c_api/rlpc_attributes.h"
-#include "decoder/c_api/rlpc_decode.h"
+#include "decoder/c_api/rlpc_c_decoder.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define RLPC_LARGER_FRAMES 1

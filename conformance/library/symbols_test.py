@@ -11,9 +11,9 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HEADERS = ("common/c_api/rlpc_clip.h", "common/c_api/rlpc_status.h",
-           "decoder/c_api/rlpc_attributes.h", "decoder/c_api/rlpc_decode.h",
+           "decoder/c_api/rlpc_attributes.h", "decoder/c_api/rlpc_c_decoder.h",
            "decoder/c_api/rlpc_frame_output.h", "decoder/c_api/rlpc_pose.h",
-           "encoder/c_api/rlpc_encode.h")
+           "encoder/c_api/rlpc_c_encoder.h")
 
 
 def declared(headers):

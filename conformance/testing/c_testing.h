@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "encoder/c_api/rlpc_encode.h"
+#include "encoder/c_api/rlpc_c_encoder.h"
 
 static int failures = 0;
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "encoder/c_api/rlpc_encode.h"
+#include "encoder/c_api/rlpc_c_encoder.h"
 
 namespace rlpc {
 

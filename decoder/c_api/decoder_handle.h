@@ -10,7 +10,7 @@
 #include "common/c_api/c_handle.h"
 #include "common/codec/mesh/skeleton.h"
 #include "common/memory/owned.h"
-#include "decoder/c_api/rlpc_decode.h"
+#include "decoder/c_api/rlpc_c_decoder.h"
 #include "decoder/rlpc_decoder.h"
 #include "decoder/surface/drawn_mesh.h"
 

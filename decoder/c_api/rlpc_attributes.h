@@ -15,7 +15,7 @@
 //   rlpc_decoder_frame(decoder, 17, &output);
 //
 // Frames do not depend on attributes, and errors in attributes do not affect frames. A coarse
-// mesh (coarse_layers) has no attributes. Status codes: as in rlpc_decode.h.
+// mesh (coarse_layers) has no attributes. Status codes: as in rlpc_c_decoder.h.
 #pragma once
 
 #include <stddef.h>

@@ -1,4 +1,5 @@
-// Frames in any order and form, GOFs, indices, bounds and memory (decoder/c_api/rlpc_decode.h).
+// Frames in any order and form, GOFs, indices, bounds and memory
+// (decoder/c_api/rlpc_c_decoder.h).
 #include <algorithm>
 #include <cstdint>
 #include <span>

@@ -186,8 +186,8 @@ class Layers(RealTree):
                                f"{name}:1", "must neither throw nor catch")
         for name, line in (("common/codec/mesh/topology.cpp", "// throw"),
                            ("common/codec/mesh/topology_test.cpp", "void f() { throw 1; }"),
-                           ("decoder/c_api/rlpc_decode.cpp", "void f() { throw 1; }"),
-                           ("encoder/c_api/rlpc_encode.cpp", "void f() { throw 1; }")):
+                           ("decoder/c_api/rlpc_c_decoder.cpp", "void f() { throw 1; }"),
+                           ("encoder/c_api/rlpc_c_encoder.cpp", "void f() { throw 1; }")):
             with self.subTest(name=name), self.planted(name, lambda t, l=line: l + "\n" + t):
                 self.assertEqual(check_layers.check(self.root)[0], [])
 

@@ -23,7 +23,7 @@ endforeach()
 if(TARGET rlpc)
   list(APPEND public_headers
        common/c_api/rlpc_clip.h common/c_api/rlpc_status.h decoder/c_api/rlpc_attributes.h
-       decoder/c_api/rlpc_decode.h decoder/c_api/rlpc_frame_output.h decoder/c_api/rlpc_pose.h encoder/c_api/rlpc_encode.h)
+       decoder/c_api/rlpc_c_decoder.h decoder/c_api/rlpc_frame_output.h decoder/c_api/rlpc_pose.h encoder/c_api/rlpc_c_encoder.h)
   foreach(library rlpc rlpc_static rlpc_dec rlpc_dec_static)
     get_target_property(export_name ${library} EXPORT_NAME)
     add_library(rlpc::${export_name} ALIAS ${library})

@@ -1,4 +1,4 @@
-#include "decoder/c_api/rlpc_decode.h"
+#include "decoder/c_api/rlpc_c_decoder.h"
 
 #include <algorithm>
 #include <cstring>

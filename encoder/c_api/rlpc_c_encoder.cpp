@@ -1,4 +1,4 @@
-#include "encoder/c_api/rlpc_encode.h"
+#include "encoder/c_api/rlpc_c_encoder.h"
 
 #include <memory>
 #include <optional>

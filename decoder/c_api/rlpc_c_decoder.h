@@ -1,4 +1,4 @@
-// RLPC decoder in C. C99 and C++; part of librlpc.
+// RLPC decoder in C. C99 and C++; part of librlpc and librlpcdec.
 //
 //   rlpc_decoder* decoder;
 //   rlpc_status status = rlpc_decoder_open_file("dance.rlpc", NULL, &decoder);
