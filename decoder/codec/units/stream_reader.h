@@ -42,17 +42,17 @@ class StreamReader {
 
   const StreamContext& context() const { return context_; }
   const SequenceHeader& header() const { return context_.header; }
-  std::span<const Triangle> triangles() const { return triangles_; }  // in output order
+  std::span<const Triangle> triangles() const { return lead_.triangles; }  // in output order
   // 8.6.1: output index of each decoded vertex; empty: the same.
-  std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
-  const String& metadata() const { return metadata_; }  // the last so far
-  const Vector<Clip>& clips() const { return clips_; }  // the last clip table so far
+  std::span<const std::uint32_t> vertex_order() const { return lead_.vertex_order; }
+  const String& metadata() const { return lead_.metadata; }  // the last so far
+  const Vector<Clip>& clips() const { return lead_.clips; }  // the last clip table so far
   // Returns the errors of ignored ancillary units (DecoderOptions::skip_damaged_units).
-  const Vector<Error>& damaged_units() const { return damaged_units_; }
+  const Vector<Error>& damaged_units() const { return lead_.damaged_units; }
   // Returns the asset unit, if any, whose CRC has been checked.
-  const std::optional<UnitHeader>& asset_unit() const { return asset_unit_; }
+  const std::optional<UnitHeader>& asset_unit() const { return lead_.asset_unit; }
   // Returns the attribute unit, if any, whose CRC has been checked.
-  const std::optional<UnitHeader>& attribute_unit() const { return attribute_unit_; }
+  const std::optional<UnitHeader>& attribute_unit() const { return lead_.attribute_unit; }
 
   // Advances to the next GOF unit, past everything in between. None: a proper end of the
   // sequence. Parses all shared rigs, or skips them until a GOF that is read uses them.
@@ -79,19 +79,19 @@ class StreamReader {
   Result<GofPlace> locate(std::uint32_t frame);
   // Place between two units.
   struct Place {
-    std::uint64_t offset = 0;
+    std::uint64_t offset = kStreamHeaderBytes;
     std::uint32_t next_first_frame = 0;
     bool ended = false;
   };
-  Place place() const { return {offset_, frames_parsed_, ended_}; }
+  const Place& place() const { return place_; }
   void return_to(const Place& place);
   // Goes to a place between units; first_frame: the next frame there.
   void go_to(std::uint64_t offset, std::uint32_t first_frame);
 
   // Returns the first frame of the GOF that find_gof() finds.
-  std::uint32_t next_first_frame() const { return frames_parsed_; }
-  bool ended() const { return ended_; }
-  std::uint64_t offset() const { return offset_; }  // offset of the next unit
+  std::uint32_t next_first_frame() const { return place_.next_first_frame; }
+  bool ended() const { return place_.ended; }
+  std::uint64_t offset() const { return place_.offset; }  // offset of the next unit
   std::uint32_t num_gofs() const { return static_cast<std::uint32_t>(gofs_.size()); }
   // Sets the memory of cached GOFs from now on.
   void set_cached_bytes(std::uint64_t bytes) {
@@ -105,6 +105,22 @@ class StreamReader {
   StreamRigs& rigs() { return rigs_; }
 
  private:
+  struct Options {
+    DecodeLimits limits;
+    bool is_coarse;
+    bool skips_damaged_units;
+  };
+  // Contents of the units outside GOFs and rigs.
+  struct Lead {
+    Vector<Triangle> triangles;
+    Vector<std::uint32_t> vertex_order;
+    String metadata;
+    Vector<Clip> clips;
+    Vector<Error> damaged_units;
+    std::optional<UnitHeader> attribute_unit;
+    std::optional<UnitHeader> asset_unit;
+  };
+
   bool starts_gofs(const UnitHeader& unit) const;
   Result<bool> read_sequence_header();
   // Replaces the bytes counted for an object that is kept.
@@ -124,27 +140,16 @@ class StreamReader {
   Result<std::optional<std::uint32_t>> gof_end(const UnitHeader& unit);
   void remember_gof(const UnitHeader& unit);
 
-  DecodeLimits limits_;
-  bool is_coarse_;
-  bool skips_damaged_units_;
+  const Options options_;
   std::uint64_t bytes_in_use_ = 0;  // without cached GOFs
   UnitReader units_;
   StreamContext context_;
   AccessUnitReader access_units_;
   StreamRigs rigs_;
-  Vector<Triangle> triangles_;
-  Vector<std::uint32_t> vertex_order_;
-  String metadata_;
-  Vector<Clip> clips_;
-  Vector<Error> damaged_units_;
-  std::optional<UnitHeader> attribute_unit_;
-  std::optional<UnitHeader> asset_unit_;
-
-  std::uint64_t offset_ = kStreamHeaderBytes;
-  std::uint32_t frames_parsed_ = 0;
+  Lead lead_;
+  Place place_;
   Vector<GofLocation> gofs_;  // GOFs seen so far, ascending
   bool index_tried_ = false;
-  bool ended_ = false;
 };
 
 }  // namespace rlpc
