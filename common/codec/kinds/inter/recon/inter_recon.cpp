@@ -85,17 +85,18 @@ InterRecon::InterRecon(const OrderedMesh& mesh, const InterSettings& settings,
     : mesh_(mesh),
       settings_(settings),
       kernels_(kernels().back()),
-      value_bits_(position_bits + kPointFractionBits + 1),
-      position_bits_(position_bits),
-      values_(3 * std::size_t{mesh.num_vertices()}),
-      reference_(values_.size()),
-      motion_(values_.size()) {}
+      bits_{position_bits + kPointFractionBits + 1, position_bits} {
+  const std::size_t size = 3 * std::size_t{mesh.num_vertices()};
+  frame_.values.resize(size);
+  frame_.reference.resize(size);
+  frame_.motion.resize(size);
+}
 
 // 8.19.1 DecodeFrame( f )
 void InterRecon::decode(const FramePlace& place, std::uint32_t last_use,
                         const InterFrame& frame) {
   start_frame(frame.reference ? place.from(*frame.reference) : place, last_use);
-  if (number_ == 0 && settings_.rest.order_flag) {
+  if (now_.number == 0 && settings_.rest.order_flag) {
     decode_positions_in_order(frame);
     return end_frame();
   }
@@ -144,63 +145,64 @@ void InterRecon::decode(const FramePlace& place, std::uint32_t last_use,
 
 // 8.19.1 DecodePositionsInOrder( )
 void InterRecon::decode_positions_in_order(const InterFrame& frame) {
-  Vector<std::int32_t> residuals(values_.size());
+  Vector<std::int32_t> residuals(frame_.values.size());
   for (std::size_t i = 0; i < frame.residual.size(); ++i) residuals[i] = frame.residual[i];
   const RestOrder& order = mesh_.rest_order();
-  const RestRecon recon(order, settings_.rest, settings_.step[0], position_bits_);
+  const RestRecon recon(order, settings_.rest, settings_.step[0], bits_.position);
   set_positions(recon_rest(recon, order, residuals, frame.counterparts));
 }
 
 void InterRecon::set_positions(std::span<const std::int32_t> positions) {
-  values_.assign(positions.begin(), positions.end());
+  frame_.values.assign(positions.begin(), positions.end());
 }
 
 void InterRecon::positions(std::span<std::int32_t> positions) const {
-  for (std::size_t i = 0; i < values_.size(); ++i) {
-    positions[i] = clip_signed(position_bits_, round2(values_[i], kPointFractionBits));
+  for (std::size_t i = 0; i < frame_.values.size(); ++i) {
+    positions[i] = clip_signed(bits_.position, round2(frame_.values[i], kPointFractionBits));
   }
 }
 
 void InterRecon::skip_to(std::uint32_t place) {
-  if (number_ == 1) start_motion();
-  number_ = place;
+  if (now_.number == 1) start_motion();
+  now_.number = place;
 }
 
 void InterRecon::start_frame(const FramePlace& place, std::uint32_t last_use) {
-  if (number_ == 1) start_motion();
-  place_ = place;
-  last_use_ = last_use;
-  temporal_layer_ = settings_.pattern.temporal_layer(place.depth);
-  if (number_ > 0) make_reference();
+  if (now_.number == 1) start_motion();
+  now_.place = place;
+  now_.last_use = last_use;
+  now_.temporal_layer = settings_.pattern.temporal_layer(place.depth);
+  if (now_.number > 0) make_reference();
 }
 
 void InterRecon::move_patches(const FramePatches& patches) {
-  patches_->start_frame(reference_, place_.depth, settings_.step[place_.depth], patches);
+  patches_->start_frame(frame_.reference, now_.place.depth, settings_.step[now_.place.depth],
+                        patches);
 }
 
 // 8.19.3 MakeReference( f )
 void InterRecon::make_reference() {
-  const Vector<std::int32_t>& a = kept_.at(place_.first).values;
-  if (place_.first == place_.second) {
-    reference_ = a;
+  const Vector<std::int32_t>& a = kept_.at(now_.place.first).values;
+  if (now_.place.first == now_.place.second) {
+    frame_.reference = a;
     return;
   }
-  const Vector<std::int32_t>& b = kept_.at(place_.second).values;
-  const std::int64_t of_a = place_.second - place_.frame;
-  const std::int64_t of_b = place_.frame - place_.first;
-  for (std::size_t i = 0; i < reference_.size(); ++i) {
-    reference_[i] =
+  const Vector<std::int32_t>& b = kept_.at(now_.place.second).values;
+  const std::int64_t of_a = now_.place.second - now_.place.frame;
+  const std::int64_t of_b = now_.place.frame - now_.place.first;
+  for (std::size_t i = 0; i < frame_.reference.size(); ++i) {
+    frame_.reference[i] =
         static_cast<std::int32_t>(div_round(of_a * a[i] + of_b * b[i], of_a + of_b));
   }
 }
 
 // 8.19.2 StartMotion( )
 void InterRecon::start_motion() {
-  near_ = near_vertices(mesh_, values_);
+  near_ = near_vertices(mesh_, frame_.values);
   std::array<Vector<std::int32_t>, 3> rest;
   for (std::size_t c = 0; c < 3; ++c) {
     rest[c].resize(mesh_.num_vertices());
-    for (std::size_t v = 0; v < rest[c].size(); ++v) rest[c][v] = values_[3 * v + c];
+    for (std::size_t v = 0; v < rest[c].size(); ++v) rest[c][v] = frame_.values[3 * v + c];
   }
   weights_.emplace(mesh_, settings_.weights,
                    std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]},
@@ -208,15 +210,15 @@ void InterRecon::start_motion() {
   if (settings_.learning_flag) start_learning();
   if (settings_.num_patches > 0) {
     patches_.emplace(settings_.num_patches, settings_.patch_of_vertex,
-                     mesh_.vertices_of_layers(0, settings_.layer_group_size[0]), values_,
-                     settings_.pattern.num_depths(), value_bits_);
+                     mesh_.vertices_of_layers(0, settings_.layer_group_size[0]), frame_.values,
+                     settings_.pattern.num_depths(), bits_.value);
   }
 }
 
 // 8.19.4 StartLearning( )
 void InterRecon::start_learning() {
   const std::uint32_t num_vertices = mesh_.num_vertices();
-  plain_error_.assign(values_.size(), 0);
+  frame_.plain_error.assign(frame_.values.size(), 0);
   first_.resize(num_vertices);
   std::size_t size = 0;
   for (std::uint32_t v = 0; v < num_vertices; ++v) {
@@ -227,7 +229,7 @@ void InterRecon::start_learning() {
   Learned learned;
   for (auto* const errors : {&learned.plain_error1, &learned.plain_error2, &learned.error,
                              &learned.error1, &learned.older_error}) {
-    errors->assign(values_.size(), 0);
+    errors->assign(frame_.values.size(), 0);
   }
   learned.filters.assign(size, 0);
   const std::int64_t variance = std::int64_t{1}
@@ -277,7 +279,7 @@ void InterRecon::prime(Learned& learned, std::uint32_t v, std::int64_t variance)
   std::int64_t largest = 1;
   for (std::size_t c = 0; c < 3; ++c) {
     const auto at = [&](std::uint32_t u) -> std::int64_t {
-      return values_[3 * std::size_t{u} + c];
+      return frame_.values[3 * std::size_t{u} + c];
     };
     std::int64_t sum = 0;
     for (const std::uint32_t u : ring) sum += at(u);
@@ -305,10 +307,10 @@ void InterRecon::prime(Learned& learned, std::uint32_t v, std::int64_t variance)
 void InterRecon::predict(std::uint32_t v, VertexMotion& motion, bool is_there) const {
   const auto ring = mesh_.ring(v);
   const std::size_t own = 3 * std::size_t{v};
-  if (number_ == 0) {
+  if (now_.number == 0) {
     for (std::size_t c = 0; c < 3; ++c) {
       std::int64_t sum = 0;
-      for (const std::uint32_t u : ring) sum += values_[3 * std::size_t{u} + c];
+      for (const std::uint32_t u : ring) sum += frame_.values[3 * std::size_t{u} + c];
       motion.prediction[c] = static_cast<std::int32_t>(mean_of(sum, ring.size()));
     }
     return;
@@ -323,9 +325,11 @@ void InterRecon::predict(std::uint32_t v, VertexMotion& motion, bool is_there) c
     motion.plain[c] =
         clip3(-kMostMotion, kMostMotion, motion.mean[c] + round2(sum, kWeightFractionBits));
   }
-  if (settings_.learning_flag) return predict(learned_[temporal_layer_], v, motion, is_there);
+  if (settings_.learning_flag)
+    return predict(learned_[now_.temporal_layer], v, motion, is_there);
   for (std::size_t c = 0; c < 3; ++c) {
-    motion.prediction[c] = clip_signed(value_bits_, reference_[own + c] + motion.plain[c]);
+    motion.prediction[c] =
+        clip_signed(bits_.value, frame_.reference[own + c] + motion.plain[c]);
   }
 }
 
@@ -336,7 +340,8 @@ void InterRecon::predict(const Learned& learned, std::uint32_t v, VertexMotion& 
   for (std::size_t c = 0; c < 3; ++c) {
     const std::int64_t moved =
         motion.mean[c] + kernels_.predict_offset(state, motion.offsets[c].data());
-    motion.prediction[c] = clip_signed(value_bits_, reference_[3 * std::size_t{v} + c] + moved);
+    motion.prediction[c] =
+        clip_signed(bits_.value, frame_.reference[3 * std::size_t{v} + c] + moved);
   }
 }
 
@@ -345,7 +350,7 @@ void InterRecon::gather_motion(std::uint32_t v, VertexMotion& motion) const {
   const auto near = near_[v];
   const std::size_t n = ring.size() + near.size();
   for (std::size_t c = 0; c < 3; ++c) {
-    const std::int32_t* const motions = &motion_[c];
+    const std::int32_t* const motions = &frame_.motion[c];
     std::int32_t* const offsets = motion.offsets[c].data();
     std::int64_t sum = 0;
     for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -375,7 +380,7 @@ void InterRecon::gather_errors(const Learned& learned, std::uint32_t v, VertexMo
       continue;
     }
     std::int64_t sum = 0;
-    for (const std::uint32_t u : ring) sum += plain_error_[3 * std::size_t{u} + c];
+    for (const std::uint32_t u : ring) sum += frame_.plain_error[3 * std::size_t{u} + c];
     offsets[0] = learned.plain_error1[own];
     offsets[1] = learned.plain_error2[own];
     offsets[2] = static_cast<std::int32_t>(mean_of(sum, ring.size()));
@@ -399,23 +404,24 @@ Vec3i InterRecon::position(std::uint32_t v, const VertexMotion& motion,
   Vec3i values{};
   for (std::size_t c = 0; c < 3; ++c) {
     const std::int64_t difference = round2(residual[c] * of_step, kPointFractionBits);
-    values[c] = clip_signed(value_bits_, start_of(v, motion, c) + difference);
+    values[c] = clip_signed(bits_.value, start_of(v, motion, c) + difference);
   }
   return values;
 }
 
 void InterRecon::set(std::uint32_t v, const VertexMotion& motion, const Vec3i& position,
                      bool is_there) {
-  Vector<std::int32_t>* const errors =
-      number_ > 0 && settings_.learning_flag ? &learned_[temporal_layer_].error : nullptr;
+  Vector<std::int32_t>* const errors = now_.number > 0 && settings_.learning_flag
+                                           ? &learned_[now_.temporal_layer].error
+                                           : nullptr;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t own = 3 * std::size_t{v} + c;
-    values_[own] = position[c];
-    if (number_ == 0) continue;
-    motion_[own] = position[c] - reference_[own];
+    frame_.values[own] = position[c];
+    if (now_.number == 0) continue;
+    frame_.motion[own] = position[c] - frame_.reference[own];
     if (errors == nullptr) continue;
-    plain_error_[own] =
-        is_there ? static_cast<std::int32_t>(motion_[own] - motion.plain[c]) : 0;
+    frame_.plain_error[own] =
+        is_there ? static_cast<std::int32_t>(frame_.motion[own] - motion.plain[c]) : 0;
     (*errors)[own] = is_there ? position[c] - motion.prediction[c] : 0;
   }
 }
@@ -423,18 +429,18 @@ void InterRecon::set(std::uint32_t v, const VertexMotion& motion, const Vec3i& p
 // 8.19.4 Learn( f, v, present )
 void InterRecon::adapt(std::uint32_t v, VertexMotion& motion, bool is_there,
                        std::uint32_t expected) {
-  if (number_ == 0 || !settings_.learning_flag) return;
+  if (now_.number == 0 || !settings_.learning_flag) return;
   const std::int64_t of_step = step(v);
   const std::int64_t variance =
       of_step * of_step * (128 + std::int64_t{expected} * std::int64_t{expected});
-  const std::uint32_t own = temporal_layer_;
+  const std::uint32_t own = now_.temporal_layer;
   for (std::uint32_t t = own; t < settings_.pattern.temporal_layers; ++t) {
     Learned& learned = learned_[t];
     if (t > own) {
       predict(learned, v, motion, is_there);
       for (std::size_t c = 0; c < 3; ++c) {
         const std::size_t i = 3 * std::size_t{v} + c;
-        learned.error[i] = is_there ? values_[i] - motion.prediction[c] : 0;
+        learned.error[i] = is_there ? frame_.values[i] - motion.prediction[c] : 0;
       }
     }
     if (is_there) adapt(learned, v, motion, variance);
@@ -447,18 +453,18 @@ void InterRecon::adapt(Learned& learned, std::uint32_t v, const VertexMotion& mo
   const FilterState state = filter(learned, v);
   for (std::size_t c = 0; c < 3; ++c) {
     const std::int32_t* const offsets = motion.offsets[c].data();
-    const std::int64_t error = motion_[3 * std::size_t{v} + c] - motion.mean[c] -
+    const std::int64_t error = frame_.motion[3 * std::size_t{v} + c] - motion.mean[c] -
                                kernels_.predict_offset(state, offsets);
     kernels_.adapt_to_frame(state, offsets, error, variance);
   }
 }
 
 void InterRecon::end_frame() {
-  if (number_ > 0 && settings_.learning_flag) end_errors();
+  if (now_.number > 0 && settings_.learning_flag) end_errors();
   // Reuses the memory of frames that are no longer needed.
   Vector<std::int32_t> free;
   for (auto it = kept_.begin(); it != kept_.end();) {
-    if (it->second.last_use > number_) {
+    if (it->second.last_use > now_.number) {
       ++it;
       continue;
     }
@@ -467,15 +473,15 @@ void InterRecon::end_frame() {
   }
   // Keeps this frame for one more in any case: the rest of a period that turns out to be
   // shorter may be predicted from it.
-  free = values_;
-  const std::uint32_t last_repeat = number_ + std::max(1U, settings_.max_earlier_distance);
-  kept_[place_.frame] = {std::move(free), std::max(last_use_, last_repeat)};
-  ++number_;
+  free = frame_.values;
+  const std::uint32_t last_repeat = now_.number + std::max(1U, settings_.max_earlier_distance);
+  kept_[now_.place.frame] = {std::move(free), std::max(now_.last_use, last_repeat)};
+  ++now_.number;
 }
 
 // 8.19.4 EndErrors( f )
 void InterRecon::end_errors() {
-  for (std::uint32_t t = temporal_layer_; t < settings_.pattern.temporal_layers; ++t) {
+  for (std::uint32_t t = now_.temporal_layer; t < settings_.pattern.temporal_layers; ++t) {
     Learned& learned = learned_[t];
     for (std::size_t i = 0; i < learned.older_error.size(); ++i) {
       const std::int64_t sum = std::int64_t{learned.older_error[i]} + learned.error1[i];
@@ -484,7 +490,7 @@ void InterRecon::end_errors() {
     }
     learned.error1.swap(learned.error);
     learned.plain_error2.swap(learned.plain_error1);
-    learned.plain_error1 = plain_error_;
+    learned.plain_error1 = frame_.plain_error;
   }
 }
 

@@ -73,12 +73,13 @@ class InterRecon {
   std::int32_t start_of(std::uint32_t v, const VertexMotion& motion, std::size_t c) const;
   // Returns FrameStep of a vertex, 1/256 grid units.
   std::int64_t step(std::uint32_t v) const {
-    return std::int64_t{settings_.step[place_.depth]} * settings_.layer_step[mesh_.layer_of(v)];
+    return std::int64_t{settings_.step[now_.place.depth]} *
+           settings_.layer_step[mesh_.layer_of(v)];
   }
   // Returns the place in coding order that is in progress, or comes next.
-  std::uint32_t place() const { return number_; }
+  std::uint32_t place() const { return now_.number; }
   // Returns the reference of the frame in progress, unless it is the first.
-  std::span<const std::int32_t> reference() const { return reference_; }
+  std::span<const std::int32_t> reference() const { return frame_.reference; }
   const PatchRecon& patches() const { return *patches_; }
 
  private:
@@ -95,6 +96,24 @@ class InterRecon {
   struct Kept {
     Vector<std::int32_t> values;
     std::uint32_t last_use = 0;
+  };
+  struct Bits {
+    int value;
+    int position;
+  };
+  // The frame in progress, or the last one.
+  struct Current {
+    std::uint32_t number = 0;  // index of the place in coding order; the next one after a frame
+    FramePlace place;
+    std::uint32_t last_use = 0;
+    std::uint32_t temporal_layer = 0;
+  };
+  // [num_vertices][3] of it, 1/16 grid units.
+  struct Values {
+    Vector<std::int32_t> values;       // FrameValues
+    Vector<std::int32_t> reference;    // Reference
+    Vector<std::int32_t> motion;       // values - reference
+    Vector<std::int32_t> plain_error;  // if weights are learned
   };
 
   bool follows_patch(std::uint32_t v) const {
@@ -122,25 +141,17 @@ class InterRecon {
   const OrderedMesh& mesh_;
   const InterSettings& settings_;
   Kernels kernels_;
-  int value_bits_;
-  int position_bits_;
-  std::uint32_t number_ = 0;          // index of the place in coding order
-  FramePlace place_;                  // last place started
-  std::uint32_t last_use_ = 0;        // last use of its frame
-  std::uint32_t temporal_layer_ = 0;  // temporal layer of its frame
-  Map<std::uint32_t, Kept> kept_;     // frames that later frames need
-  // [num_vertices][3], 1/16 grid units.
-  Vector<std::int32_t> values_;     // FrameValues
-  Vector<std::int32_t> reference_;  // Reference
-  Vector<std::int32_t> motion_;     // values_ - reference_
+  Bits bits_;
+  Current now_;
+  Map<std::uint32_t, Kept> kept_;  // frames that later frames need
+  Values frame_;
   // Set from the second frame on.
   VertexLists near_;
   std::optional<GeometryWeights> weights_;
   std::optional<PatchRecon> patches_;
   // Set if weights are learned.
-  Vector<std::int32_t> plain_error_;  // [num_vertices][3], current frame
-  Vector<std::size_t> first_;         // [num_vertices] start of the filter
-  Vector<Learned> learned_;           // [temporal_layers]
+  Vector<std::size_t> first_;  // [num_vertices] start of the filter
+  Vector<Learned> learned_;    // [temporal_layers]
 };
 
 }  // namespace rlpc
