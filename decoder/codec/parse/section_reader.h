@@ -112,7 +112,7 @@ class SectionReader {
   std::uint32_t tree(Models& models, const char* element) {
     const std::uint64_t at = mark();
     std::size_t node = 1;
-    while (node < models.size()) node = 2 * node + (rd_.bin(models[node]) ? 1 : 0);
+    while (node < models.size()) node = 2 * node + (rd_.bin(models[node]) ? 1U : 0U);
     const auto leaf = static_cast<std::uint32_t>(node - models.size());
     trace(element, leaf, at);
     return leaf;

@@ -11,7 +11,7 @@ void Prefetch::ask(const GofPlace& /*place*/, std::uint32_t /*frame*/) {}
 
 bool Prefetch::has_asked(std::uint32_t /*frame*/) const { return false; }
 
-void Prefetch::hand_over_models() {}
+void Prefetch::hand_over_rigs() {}
 
 std::optional<Prefetch::Found> Prefetch::take(std::uint64_t /*offset*/,
                                               std::uint32_t /*first_frame*/) {

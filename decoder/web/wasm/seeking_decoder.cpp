@@ -36,7 +36,7 @@ bool SeekingDecoder::find_index() {
   }
   landmarks_.clear();
   for (const GofLocation& gof : index->gofs) landmarks_.push_back(gof.offset);
-  for (const ModelLocation& model : index->models) landmarks_.push_back(model.offset);
+  for (const RigLocation& rig : index->rigs) landmarks_.push_back(rig.offset);
   if (landmarks_.empty()) return true;
   std::sort(landmarks_.begin(), landmarks_.end());
   landmarks_.push_back(units.size());

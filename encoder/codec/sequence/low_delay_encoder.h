@@ -9,6 +9,7 @@
 
 #include "common/codec/kinds/inter/inter_gof.h"
 #include "common/codec/mesh/ordered_meshes.h"
+#include "encoder/codec/frame_format.h"
 #include "encoder/codec/kinds/inter/closed_loop.h"
 #include "encoder/codec/rest/rest_coding.h"
 #include "encoder/codec/sequence/attribute_stage.h"

@@ -330,9 +330,9 @@ InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSi
     if (auto error = raise_level(header.level_idc, span.needs, span.gofs.front().num_frames)) {
       return *error;
     }
-    report.clusters += gof.clusters;
-    report.components += gof.components;
-    count_patterns(gof.choices, report.patterns);
+    report.clusters += span.clusters;
+    report.components += span.components;
+    count_patterns(span.choices, report.patterns);
   }
   attributes_->encode(kept_frames(best.trial), *stream_);
   report.attributes = attributes_->reports();

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "encoder/codec/frame_format.h"
 #include "encoder/codec/sequence/attribute_stage.h"
 #include "encoder/codec/sequence/choices/gof_cuts.h"
 #include "encoder/codec/sequence/choices/level_choice.h"

@@ -49,7 +49,7 @@ class SectionWriter {
     for (std::size_t half = models.size() / 2; half > 0; half /= 2) {
       const bool bit = (leaf & half) != 0;
       re_.bin(models[node], bit);
-      node = 2 * node + (bit ? 1 : 0);
+      node = 2 * node + (bit ? 1U : 0U);
     }
   }
   // Returns the number of bytes so far.

@@ -114,7 +114,7 @@ void SetWriter::write_float_residual(std::array<BitModel, 64>& models, std::uint
   const auto size = static_cast<std::uint32_t>(std::bit_width(magnitude));
   section_.tree(models, size);
   if (size == 0) return;
-  section_.bypass(1, is_negative ? 1 : 0);
+  section_.bypass(1, is_negative ? 1U : 0U);
   const int low_bits = static_cast<int>(size) - 1;
   section_.bypass(low_bits, magnitude - (std::uint32_t{1} << low_bits));
 }

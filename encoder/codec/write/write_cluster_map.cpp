@@ -16,7 +16,7 @@ void write_cluster(SectionWriter& section, ClusterMapModels& models, std::size_t
   for (int bit = ceil_log2(num_clusters) - 1; bit >= 0; --bit) {
     const bool one = ((cluster >> bit) & 1) != 0;
     section.bin(models.cluster_idx[node], one);
-    node = 2 * node + (one ? 1 : 0);
+    node = 2 * node + (one ? 1U : 0U);
   }
 }
 

@@ -39,7 +39,7 @@ void write_residual(Coder& re, ResidualModels& models, std::uint32_t expected,
            ((low >> (ctx.shift - 1)) & 1U) != 0);
     re.bypass(ctx.shift - 1, low & ((std::uint32_t{1} << (ctx.shift - 1)) - 1));
   }
-  if (magnitude != 0) re.bypass(1, value < 0 ? 1 : 0);
+  if (magnitude != 0) re.bypass(1, value < 0 ? 1U : 0U);
 }
 
 }  // namespace rlpc

@@ -80,7 +80,7 @@ class RestWriter {
     if (!choice.new_flag) return;
     section.bypass(ceil_log2(num_hinges), choice.hinge);
     section.bypass(ceil_log2(counterparts_.num_listed()), choice.idx);
-    section.bypass(1, choice.mirrored ? 1 : 0);
+    section.bypass(1, choice.mirrored ? 1U : 0U);
   }
   template <class Section>
   void write_residual(Section& section, RestClass rest_class, const Vec3i& residual,

@@ -73,7 +73,7 @@ void ClosedLoop::choose(Layer& layer, std::span<const double> xyz, InterFrame* c
       } else if (settings_.exact_flag) {
         residual[c] = rounded_residual((on_grid(value) * kPoint - start) / step, 0.5);
       } else {
-        residual[c] = cheaper_residual(contexts.rigs(), contexts.expected(),
+        residual[c] = cheaper_residual(contexts.models(), contexts.expected(),
                                        (value * kPoint - start) / step);
       }
       writer_.write(residual[c]);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "encoder/codec/metrics/metrics.h"
 #include "encoder/codec/settings.h"
 #include "encoder/meshes/frame_source.h"
 
