@@ -251,7 +251,7 @@ TEST(ParseTracksRanges, TrajectoriesOfBothAreBoundedByTheLevel) {
     EXPECT_TRUE(tracks.slice(slice));
     SliceRecipe own(2, 0);
     // Not the first slice with such elements: the models go on.
-    own.rigs = slice.rigs;
+    own.models = slice.models;
     own.num_group_components_minus1(local - 1);
     for (std::int32_t l = 0; l < local; ++l) own.trajectory(0, 0, 0, 0, 0, 3);
     tracks.add_residuals(own, static_cast<std::size_t>(local));
@@ -302,7 +302,7 @@ TEST(ParseRigRanges, FactorsOfGofsWithRigsAreBoundedByTheLevel) {
     ASSERT_TRUE(units.slice(tracks));
     // A factor for each vertex is left, less 6 for the bone and 3 for each trajectory.
     SliceRecipe local(2, 0);
-    local.rigs = tracks.rigs;
+    local.models = tracks.models;
     local.num_group_components_minus1(0);
     expect_invalid(units.slice(local), "R-LVL-05", "num_group_components_minus1");
   }

@@ -369,7 +369,7 @@ Result<bool> parse_extra_bones(
   Slices slices(1, 3, 2);
   SliceRecipe slice(0, 0);
   slice.extra_bones(bones, 2, 2);
-  if (flag_follows) slice.section.bin(slice.rigs.extra_bone_flag[bones.size()], false);
+  if (flag_follows) slice.section.bin(slice.models.extra_bone_flag[bones.size()], false);
   slices.add_residuals(slice, kRestFactors);
   return slices.parse(slice);
 }
