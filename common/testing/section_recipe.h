@@ -37,7 +37,7 @@ class SectionRecipe {
       section.bin(m.low[index][std::min(prefix, 2U)], (low >> (ctx.shift - 1)) != 0);
       section.bypass(ctx.shift - 1, low & ((1U << (ctx.shift - 1)) - 1));
     }
-    if (value != 0) section.bypass(1, value < 0 ? 1 : 0);
+    if (value != 0) section.bypass(1, value < 0 ? 1U : 0U);
   }
   // 9.5.4: a difference.
   void header_delta(ResidualModels& models, std::uint32_t& mean, std::int32_t delta) {
