@@ -74,7 +74,7 @@ TEST(SpanBatch, GivesAlmostTheSameBytesWithoutKeepingAnalyses) {
                   static_cast<double>(released->gof_bytes),
                   0.02 * static_cast<double>(released->gof_bytes))
           << step;
-      for (const SpanResult& gof : kept->gofs) EXPECT_FALSE(gof.frame);
+      for (const SpanResult& gof : kept->spans) EXPECT_FALSE(gof.frame);
     }
     EXPECT_FALSE(releasing.expected_error());
   }
@@ -108,9 +108,9 @@ TEST(SpanBatch, NumbersFramesFromItsFirst) {
   const auto a = plain.encode(1000.0, 1000.0, {});
   const auto b = later.encode(1000.0, 1000.0, {});
   ASSERT_TRUE(a && b);
-  EXPECT_NE(a->gofs[0].gofs.front().units, b->gofs[0].gofs.front().units);
+  EXPECT_NE(a->spans[0].gofs.front().units, b->spans[0].gofs.front().units);
   EXPECT_EQ(a->metrics.kg_error_percent, b->metrics.kg_error_percent);
-  EXPECT_TRUE(b->gofs[0].frame);
+  EXPECT_TRUE(b->spans[0].frame);
 }
 
 EncoderSettings high_settings() {
@@ -137,9 +137,9 @@ TEST(SpanBatch, LaterSpansUseRigsOfEarlierOnes) {
       const auto trial = batch.encode(step, step, {});
       ASSERT_TRUE(trial);
       EXPECT_TRUE(batch.uses_earlier_rigs());
-      EXPECT_FALSE(trial->gofs[0].gofs[0].rig.empty());
-      EXPECT_EQ(trial->gofs[1].gofs.size(), 2U);
-      for (const SpanResult& span : trial->gofs) {
+      EXPECT_FALSE(trial->spans[0].gofs[0].rig.empty());
+      EXPECT_EQ(trial->spans[1].gofs.size(), 2U);
+      for (const SpanResult& span : trial->spans) {
         EXPECT_FALSE(span.rig);
         for (const GofBytes& gof : span.gofs) {
           bytes.push_back(gof.rig);
@@ -163,13 +163,13 @@ TEST(SpanBatch, TakesTheRigInForce) {
   SpanBatch before(coding, source, {{0, 24}}, {.keep_decoded = true, .has_followers = true});
   const auto first = before.encode(2000.0, 2000.0, {});
   ASSERT_TRUE(first);
-  ASSERT_TRUE(first->gofs[0].rig);
+  ASSERT_TRUE(first->spans[0].rig);
   SpanBatch after(coding, source, {{24, 24}},
-                  {.keep_decoded = true, .rig = first->gofs[0].rig});
+                  {.keep_decoded = true, .rig = first->spans[0].rig});
   const auto second = after.encode(2000.0, 2000.0, {});
   ASSERT_TRUE(second);
   EXPECT_TRUE(after.uses_earlier_rigs());
-  EXPECT_FALSE(second->gofs[0].rig);
+  EXPECT_FALSE(second->spans[0].rig);
   SpanBatch alone(coding, source, {{24, 24}}, {});
   EXPECT_LT(second->gof_bytes, alone.encode(2000.0, 2000.0, {})->gof_bytes);
 }

@@ -1,0 +1,445 @@
+// 7.14.2 and 8.19.1: which frame units can follow others, where a GOF of an open-ended stream
+// can end, and units that a cut drops.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "common/testing/inter_gof_recipe.h"
+#include "decoder/testing/inter_gof_units.h"
+
+namespace rlpc {
+namespace {
+
+// Variables and functions of 8.19.1, as they are written.
+struct UnitsOfText {
+  FramePattern pattern;
+  std::uint32_t num_frames = 0;
+  std::uint32_t num_groups = 1;
+  bool open_end = false;
+  std::vector<FramePlace> order;
+  std::vector<std::uint32_t> place_of;
+  std::vector<std::uint32_t> groups;  // FrameGroups
+  std::vector<bool> repeats;
+  std::vector<std::int64_t> last_place;  // LastPlaceOfLayer
+  std::vector<std::uint32_t> unit;       // UnitFrames
+
+  void start() {
+    const FrameOrder made(pattern, num_frames);
+    place_of.resize(num_frames);
+    for (std::uint32_t p = 0; p < num_frames; ++p) {
+      order.push_back(made[p]);
+      place_of[made[p].frame] = p;
+    }
+    groups.assign(num_frames, 0);
+    repeats.assign(num_frames, false);
+    last_place.assign(pattern.temporal_layers, -1);
+  }
+  std::uint32_t layer(std::uint32_t f) const {
+    const std::int64_t deeper = std::int64_t{pattern.num_depths()} - pattern.temporal_layers;
+    return static_cast<std::uint32_t>(
+        std::max<std::int64_t>(0, order[place_of[f]].depth - deeper));
+  }
+  std::int64_t last_of_all() const {
+    return *std::max_element(last_place.begin(), last_place.end());
+  }
+  bool find_unit_frames(std::uint32_t frame_idx, std::uint32_t more) {
+    unit.clear();
+    for (std::uint32_t p = place_of[frame_idx]; p < num_frames && unit.size() <= more; ++p) {
+      if (layer(order[p].frame) == layer(frame_idx)) {
+        unit.push_back(order[p].frame);
+      } else if (open_end) {
+        break;
+      }
+    }
+    return unit.size() > more;
+  }
+  bool may_follow(std::uint32_t frame_idx, std::uint32_t group) const {
+    const std::int64_t place = place_of[frame_idx];
+    const std::uint32_t own = layer(frame_idx);
+    if (place < last_place[own] || groups[frame_idx] != group) return false;
+    if (open_end && place < last_of_all()) return false;
+    if (repeats[frame_idx]) return false;
+    const std::uint32_t last = place_of[unit.back()];
+    for (std::uint32_t i = 0; i < last; ++i) {
+      const std::uint32_t f = order[i].frame;
+      const bool needed = layer(f) < own || (layer(f) == own && i < place);
+      if (needed && groups[f] <= group) return false;
+    }
+    return true;
+  }
+  void end_unit() { last_place[layer(unit[0])] = place_of[unit.back()]; }
+};
+
+FramePatternRecipe recipe_of(const FramePattern& pattern) {
+  if (pattern.kind != FramePattern::kDyadic) {
+    return {static_cast<std::uint32_t>(pattern.kind), 1, {}, {}};
+  }
+  return FramePatternRecipe::dyadic(static_cast<std::uint32_t>(pattern.period_log2),
+                                    pattern.temporal_layers - 1);
+}
+
+class RandomUnits {
+ public:
+  explicit RandomUnits(unsigned seed) : random_(seed) {
+    text_.pattern.kind = static_cast<FramePattern::Kind>(below(3));
+    if (text_.pattern.kind == FramePattern::kDyadic) {
+      text_.pattern.period_log2 = 1 + static_cast<int>(below(3));
+    }
+    text_.pattern.temporal_layers = 1 + below(text_.pattern.num_depths());
+    text_.num_frames = 2 + below(9);
+    text_.num_groups = 1 + below(3);
+    text_.open_end = below(3) == 0;
+    // Frames repeat others where there is one layer group, or one temporal layer.
+    has_earlier_ =
+        (text_.num_groups == 1 || text_.pattern.temporal_layers == 1) && below(2) == 0;
+    text_.start();
+    InterGofRecipe gof;
+    gof.num_gof_frames_minus1 = text_.num_frames - 1;
+    gof.pattern = recipe_of(text_.pattern);
+    gof.frame_step_minus1.assign(text_.pattern.num_depths(), 0);
+    gof.num_layer_groups_minus1 = text_.num_groups - 1;
+    gof.layer_group_layers_minus1.assign(text_.num_groups - 1, 0);
+    gof.max_earlier_distance = has_earlier_ ? 100 : 0;
+    gof_ = gof.payload();
+    start_again();
+    contexts_.emplace(mesh_.mesh(), text_.num_groups, text_.pattern.num_depths());
+  }
+
+  int num_taken = 0;
+  int num_refused = 0;
+
+  // Parses the next unit of a temporal layer, or any.
+  void step() {
+    std::uint32_t frame_idx = below(text_.num_frames);
+    std::uint32_t group = below(text_.num_groups);
+    if (below(4) != 0) {
+      const std::uint32_t t = below(text_.pattern.temporal_layers);
+      for (const FramePlace& place : text_.order) {
+        if (text_.layer(place.frame) != t || text_.groups[place.frame] == text_.num_groups) {
+          continue;
+        }
+        frame_idx = place.frame;
+        group = text_.groups[frame_idx];
+        break;
+      }
+    }
+    add(frame_idx, group, text_.num_groups == 1 ? below(3) : 0);
+  }
+
+ private:
+  std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(random_() % n); }
+
+  // Starts a new parser with the units so far: one that has refused a unit takes no others.
+  void start_again() {
+    SequenceHeader header = high_header(9, 40);
+    header.open_end_flag = text_.open_end;
+    units_.emplace(header, kSquares);
+    EXPECT_TRUE(units_->gof(gof_));
+    for (const Bytes& unit : taken_) EXPECT_TRUE(units_->frame(unit));
+  }
+
+  void add(std::uint32_t frame_idx, std::uint32_t group, std::uint32_t more) {
+    FrameRecipe recipe(frame_idx, group);
+    if (text_.open_end) recipe.gof_end_flag = false;
+    if (text_.num_groups == 1) recipe.unit_frames_minus1 = more;
+    if (!text_.find_unit_frames(frame_idx, more)) {
+      ++num_refused;
+      return expect_invalid(units_->frame(recipe.payload()), "R-FRM-09", "unit_frames_minus1");
+    }
+    const bool is_legal = text_.may_follow(frame_idx, group);
+    recipe.has_section = false;
+    for (const std::uint32_t f : text_.unit) {
+      const std::uint32_t place = text_.place_of[f];
+      const bool may_repeat = has_earlier_ && place > 0 && group == 0;
+      const bool repeats = may_repeat && below(3) == 0 &&
+                           text_.layer(text_.order[place - 1].frame) <= text_.layer(f);
+      if (may_repeat) {
+        recipe.earlier.emplace_back();
+        if (repeats) recipe.earlier.back() = {0, true};
+      }
+      if (!is_legal) continue;
+      text_.groups[f] = repeats ? text_.groups[text_.order[place - 1].frame] : group + 1;
+      text_.repeats[f] = repeats;
+      if (repeats) continue;
+      recipe.has_section = true;
+      if (group == 0) contexts_->start_frame(place, text_.order[place].depth);
+      contexts_->start_group(group);
+      const bool is_last = group + 1 == text_.num_groups;
+      recipe.zeros(*contexts_, mesh_.mesh().vertices_of_layers(group, is_last ? 3 : group + 1));
+    }
+    const Bytes payload = recipe.payload();
+    const auto parsed = units_->frame(payload);
+    if (is_legal) {
+      ++num_taken;
+      text_.end_unit();
+      ASSERT_TRUE(parsed) << parsed.error().rule << ' ' << frame_idx << ' ' << group;
+      taken_.push_back(payload);
+      check_completeness();
+    } else {
+      ++num_refused;
+      expect_invalid(parsed, "R-FRM-03", "frame_unit");
+      ASSERT_FALSE(parsed);
+      EXPECT_EQ(parsed.error().bit_pos, kUnitBitPos);
+      start_again();
+    }
+  }
+
+  // DecodeCompleteFrames( )
+  void check_completeness() {
+    std::int64_t end = text_.last_of_all();
+    const std::uint32_t f = text_.order[static_cast<std::size_t>(end)].frame;
+    if (text_.groups[f] == text_.num_groups || text_.repeats[f]) ++end;
+    EXPECT_EQ(units_->parser().complete_places(), end);
+  }
+
+  std::mt19937 random_;
+  InterGofUnits mesh_{high_header(9, 1), kSquares};
+  UnitsOfText text_;
+  Bytes gof_;
+  std::vector<Bytes> taken_;
+  bool has_earlier_ = false;
+  std::optional<InterGofUnits> units_;
+  std::optional<InterContexts> contexts_;
+};
+
+TEST(ParseFrameUnits, FollowEachOtherAsTheTextSays) {
+  int num_taken = 0;
+  int num_refused = 0;
+  for (unsigned seed = 1; seed <= 600; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomUnits units(seed);
+    for (int i = 0; i < 30; ++i) {
+      units.step();
+      if (testing::Test::HasFailure()) return;
+    }
+    num_taken += units.num_taken;
+    num_refused += units.num_refused;
+  }
+  EXPECT_GT(num_taken, 3000);
+  EXPECT_GT(num_refused, 3000);
+}
+
+// A GOF of an open-ended stream, of whose frames the first in coding order are coded.
+struct OpenGof {
+  InterGofUnits units;
+
+  OpenGof(const FramePatternRecipe& pattern, std::uint32_t num_depths, std::uint32_t num_frames,
+          std::uint32_t num_coded)
+      : units(open_header(), kSquares) {
+    InterGofRecipe gof;
+    gof.num_gof_frames_minus1 = num_frames - 1;
+    gof.pattern = pattern;
+    gof.frame_step_minus1.assign(num_depths, 0);
+    EXPECT_TRUE(units.gof(gof.payload()));
+    InterContexts contexts(units.mesh(), 1, num_depths);
+    for (std::uint32_t place = 0; place < num_coded; ++place) {
+      const FramePlace& at = units.parser().order()[place];
+      FrameRecipe recipe(at.frame);
+      recipe.gof_end_flag = false;
+      recipe.unit_frames_minus1 = 0;
+      contexts.start_frame(place, at.depth);
+      contexts.start_group(0);
+      recipe.zeros(contexts, units.mesh().vertices_of_layers(0, 3));
+      EXPECT_TRUE(units.frame(recipe.payload()));
+    }
+  }
+  static SequenceHeader open_header() {
+    SequenceHeader header = high_header(9, 40);
+    header.open_end_flag = true;
+    return header;
+  }
+  Result<bool> end_before(std::uint32_t frame_idx) {
+    FrameRecipe recipe(frame_idx);
+    recipe.gof_end_flag = true;
+    return units.frame(recipe.payload());
+  }
+};
+
+void expect_no_end(const Result<bool>& parsed) {
+  expect_invalid(parsed, "R-FRM-04", "frame_unit");
+  if (parsed) return;
+  EXPECT_EQ(parsed.error().bit_pos, kUnitBitPos);
+}
+
+TEST(ParseFrameUnits, AGofEndsAfterTheFramesThatItHas) {
+  for (std::uint32_t end = 0; end < 8; ++end) {
+    OpenGof gof({}, 1, 8, 4);
+    const auto ok = gof.end_before(end);
+    if (end < 4) {
+      expect_no_end(ok);
+      continue;
+    }
+    ASSERT_TRUE(ok) << end;
+    EXPECT_TRUE(gof.units.parser().last_unit()->is_gof_end);
+    EXPECT_EQ(gof.units.parser().order().num_frames(), end);
+    const InterGof parsed = gof.units.parser().finish();
+    EXPECT_EQ(parsed.num_frames, end);
+    EXPECT_EQ(parsed.frames->size(), end);
+  }
+  OpenGof gof({}, 1, 8, 4);
+  expect_invalid_at(gof.end_before(8), "R-FRM-02", "frame_idx", 0);
+}
+
+TEST(ParseFrameUnits, AGofDoesNotEndBeforeItsFirstFrame) {
+  OpenGof gof({}, 1, 8, 0);
+  expect_no_end(gof.end_before(0));
+  EXPECT_TRUE(gof.end_before(1));
+}
+
+// The order is 0, 4, 2, 1, 3, 8, 6, 5, 7. A period that is cut off has an order of its own.
+TEST(ParseFrameUnits, AGofEndsWhereItsFramesKeepTheirPlaces) {
+  struct Case {
+    std::uint32_t num_coded;
+    std::vector<std::uint32_t> ends;
+  };
+  const std::vector<Case> cases{
+      {1, {1, 2, 3, 4, 5, 6, 7, 8}}, {2, {5, 6, 7, 8}}, {5, {5, 6, 7, 8}}, {6, {}}, {9, {}}};
+  for (const auto& [num_coded, ends] : cases) {
+    for (std::uint32_t end = 0; end < 9; ++end) {
+      OpenGof gof(FramePatternRecipe::dyadic(2, 1), 3, 9, num_coded);
+      const auto ok = gof.end_before(end);
+      if (std::find(ends.begin(), ends.end(), end) != ends.end()) {
+        EXPECT_TRUE(ok) << num_coded << ' ' << end;
+      } else {
+        expect_no_end(ok);
+      }
+    }
+  }
+}
+
+// Each frame is predicted from the last one of the period before; where a period is cut off,
+// from the one before it, at depth 0. The order is the same.
+TEST(ParseFrameUnits, AGofEndsWhereItsFramesKeepTheirReferencesAndDepths) {
+  struct Case {
+    std::uint32_t num_coded;
+    std::vector<std::uint32_t> ends;
+  };
+  const auto check = [](const FramePatternRecipe& pattern, std::uint32_t num_depths,
+                        const std::vector<Case>& cases) {
+    for (const auto& [num_coded, ends] : cases) {
+      for (std::uint32_t end = num_coded; end < 10; ++end) {
+        OpenGof gof(pattern, num_depths, 10, num_coded);
+        const auto ok = gof.end_before(end);
+        if (std::find(ends.begin(), ends.end(), end) != ends.end()) {
+          EXPECT_TRUE(ok) << num_coded << ' ' << end;
+        } else {
+          expect_no_end(ok);
+        }
+      }
+    }
+  };
+  check(FramePatternRecipe::of_entries({{0, {0}, 0}, {1, {0}, 0}, {2, {0}, 0}}), 1,
+        {{4, {4, 5, 6, 7, 8, 9}}, {5, {5, 6, 7, 8, 9}}, {6, {7, 8, 9}}, {8, {8, 9}}, {9, {}}});
+  check(FramePatternRecipe::of_entries({{0, {0}, 1}, {1, {0}, 0}, {2, {0}, 0}}, 0), 2,
+        {{4, {4, 5, 6, 7, 8, 9}}, {5, {7, 8, 9}}, {7, {7, 8, 9}}, {8, {}}});
+}
+
+TEST(ParseFrameUnits, TheEndOfAGofHasNothingElse) {
+  const auto parse = [](const Bytes& payload) {
+    OpenGof gof({}, 1, 8, 4);
+    return gof.units.frame(payload);
+  };
+  // frame_idx 5 is 00110, gof_end_flag 1
+  EXPECT_TRUE(parse({0b00110'1'00}));
+  expect_invalid_at(parse({0b00110'1'01}), "R-BIT-02", "alignment_zero_bits", 6);
+  expect_invalid_at(parse({0b00110'1'00, 0}), "R-BIT-03", "unit_payload", 8);
+  const auto empty = parse({});
+  ASSERT_FALSE(empty);
+  EXPECT_EQ(empty.error().code, Errc::kTruncated);
+  EXPECT_STREQ(empty.error().rule, "R-BIT-01");
+}
+
+TEST(ParseFrameUnits, StartWithTheirFrame) {
+  for (const bool open_end : {false, true}) {
+    SequenceHeader header = high_header(9, 40);
+    header.open_end_flag = open_end;
+    const Bytes bytes{0b00110'1'01};
+    BitReader r(bytes);
+    const FrameUnitStart start = parse_frame_unit_start(r, header, 6);
+    EXPECT_EQ(start.frame_idx, 5U);
+    EXPECT_EQ(start.gof_end_flag, open_end);
+    EXPECT_EQ(r.bit_pos(), open_end ? 6U : 5U);
+    EXPECT_FALSE(r.error());
+    BitReader beyond(bytes);
+    parse_frame_unit_start(beyond, header, 5);
+    ASSERT_TRUE(beyond.error());
+    EXPECT_STREQ(beyond.error()->rule, "R-FRM-02");
+  }
+}
+
+// Three layer groups, and three frames in two temporal layers, in the order 0, 2, 1.
+struct CutGof {
+  InterGofUnits units;
+  InterContexts contexts;
+
+  explicit CutGof(const SliceCut& cut)
+      : units(high_header(9, 3), kSquares, std::uint64_t{1} << 30, cut),
+        contexts(units.mesh(), 3, 2) {
+    InterGofRecipe gof;
+    gof.num_gof_frames_minus1 = 2;
+    gof.pattern = FramePatternRecipe::dyadic(1, 1);
+    gof.frame_step_minus1 = {0, 0};
+    gof.num_layer_groups_minus1 = 2;
+    gof.layer_group_layers_minus1 = {0, 0};
+    EXPECT_TRUE(units.gof(gof.payload()));
+  }
+  bool keeps(std::uint32_t place, std::uint32_t group) {
+    const FramePlace& at = units.parser().order()[place];
+    FrameRecipe recipe(at.frame, group);
+    if (group == 0) contexts.start_frame(place, at.depth);
+    contexts.start_group(group);
+    recipe.zeros(contexts, units.mesh().vertices_of_layers(group, group + 1));
+    EXPECT_TRUE(units.frame(recipe.payload()));
+    return units.parser().last_unit().has_value();
+  }
+};
+
+TEST(ParseFrameUnits, ThatACutDropsAreAbsent) {
+  struct Case {
+    SliceCut cut;
+    std::uint32_t groups;
+    std::uint32_t temporal_layers;
+  };
+  const std::vector<Case> cases{{{}, 3, 2},
+                                {{.max_layers = 2}, 2, 2},
+                                {{.max_layers = 0}, 1, 2},
+                                {{.needed_layers = 1}, 1, 2},
+                                {{.max_temporal_layers = 1}, 3, 1},
+                                {{.max_layers = 2, .max_temporal_layers = 1}, 2, 1}};
+  for (const Case& k : cases) {
+    CutGof gof(k.cut);
+    EXPECT_FALSE(gof.units.parser().is_cut());
+    for (std::uint32_t place = 0; place < 3; ++place) {
+      for (std::uint32_t group = 0; group < 3; ++group) {
+        const bool stays = group < k.groups && (place < 2 || k.temporal_layers > 1);
+        EXPECT_EQ(gof.keeps(place, group), stays) << place << ' ' << group;
+      }
+    }
+    EXPECT_EQ(gof.units.parser().is_cut(), k.cut.cuts());
+    const InterGof parsed = gof.units.parser().finish();
+    EXPECT_EQ((*parsed.frames)[0].layer_groups, k.groups);
+    EXPECT_EQ((*parsed.frames)[2].layer_groups, k.groups);
+    EXPECT_EQ((*parsed.frames)[1].layer_groups, k.temporal_layers > 1 ? k.groups : 0);
+  }
+}
+
+// Taking a frame frees its memory and keeps what later units need of it.
+TEST(ParseFrameUnits, FramesCanBeTakenWhenTheyAreComplete) {
+  OpenGof gof({}, 1, 8, 3);
+  InterGofParser& parser = gof.units.parser();
+  const std::uint64_t before = parser.memory_bytes();
+  const InterFrame taken = parser.take_frame(1);
+  EXPECT_EQ(taken.layer_groups, 1U);
+  EXPECT_EQ(taken.residual.size(), 27U);
+  EXPECT_EQ(before - parser.memory_bytes(), 5U * 9);
+  EXPECT_EQ(parser.complete_places(), 3U);
+  EXPECT_EQ((*parser.finish().frames)[1].layer_groups, 1U);
+}
+
+}  // namespace
+}  // namespace rlpc
