@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "encoder/rlpc_encoder.h"
+
 namespace rlpc {
 namespace {
 
