@@ -16,7 +16,7 @@ class Frames(ToolsTest):
                         ("--frame-pattern", "dyadic:8"), ("--frame-pattern", "2<0,1<0+2@1")):
                 stream = self.path("a.rlpc")
                 report = self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind",
-                                     "frames", *how, name=name)
+                                     "inter", *how, name=name)
                 self.assertTrue(report["target_met"], (name, how))
                 self.ok("rlpcdec", stream, "--verify")
                 self.ok("rlpcdec", stream, "--verify", "--threads", 3)

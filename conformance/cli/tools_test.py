@@ -163,7 +163,7 @@ class RoundTrip(ToolsTest):
             return report["frames_compared"], report["hashes_verified"], text
 
         expected = {  # all frames; frames 5 to 24, which are parts of two GOFs of 20 frames
-            "none": ((0, False, "no hashes"), (0, False, "not verified")),
+            "none": ((0, False, "without hashes"), (0, False, "not verified")),
             "gof": ((60, True, "hashes agree"), (0, False, "not verified")),
             "frame": ((60, True, "hashes agree"), (20, True, "hashes agree")),
         }
