@@ -6,8 +6,8 @@ function isNode() {
   return !globalThis.document && typeof globalThis.process?.getBuiltinModule === "function";
 }
 
-/** The URL of an address: relative to the page or the worker; in node, a path relative to the working
- * directory. */
+/** The URL of an address: relative to the page or the worker; in node, a path relative to the
+ * working directory. */
 export function urlOf(address) {
   if (address instanceof URL) return address;
   if (isNode() && !kScheme.test(address)) {

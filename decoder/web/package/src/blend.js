@@ -1,4 +1,4 @@
-// Weighted sums of frames: what is shown between two frames, or in a crossfade. Nothing is allocated.
+// Weighted sums of frames: what is shown between two frames, or in a crossfade. Allocates nothing.
 
 /** Frames and their weights, which add up to 1. */
 export class FrameMix {
@@ -124,7 +124,7 @@ export function blendNormals(out, mix, places) {
   }
 }
 
-/** Two frames in one pass, for most pictures have two. instead: normals where the sum is nothing. */
+/** Two frames in one pass, for most pictures have two. instead: normals where the sum is 0. */
 function unitSum(out, { frames, weights: [weightA, weightB] }, instead, places) {
   const [{ normals: a }, { normals: b }] = frames;
   for (let i = 0; i < out.length; i += 3) {
@@ -143,7 +143,9 @@ function makeUnits(out, instead, places) {
     const y = out[i + 1];
     const z = out[i + 2];
     setUnit(out, i, x, y, z);
-    if (x * x + y * y + z * z <= kSmallest) copyVector(out, i, instead, places ? 3 * places[i / 3] : i);
+    if (x * x + y * y + z * z <= kSmallest) {
+      copyVector(out, i, instead, places ? 3 * places[i / 3] : i);
+    }
   }
 }
 

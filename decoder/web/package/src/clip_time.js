@@ -1,7 +1,8 @@
-// The time of clips (7.3 and 7.15 of the specification). Frame k of a clip is its pose k / frameRate
-// seconds after its start, as keys of glTF are: n frames take n - 1 intervals, the first pose is that
-// of the start and the last one that of the end. Where a clip repeats, its end is the start of the
-// next turn. A clip whose last pose is the first, as loops have it, thus never halts.
+// The time of clips (7.3 and 7.15 of the specification). Frame k of a clip is its pose
+// k / frameRate seconds after its start, as keys of glTF are: n frames take n - 1 intervals, the
+// first pose is that of the start and the last one that of the end. Where a clip repeats, its end
+// is the start of the next turn. A clip whose last pose is the first, as loops have it, thus never
+// halts.
 //
 // Times here are in intervals, from one frame to the next; loop is "repeat", "once" or "pingpong".
 // Times of frames are rounded, as those of callers are: what is within kExact of a frame, or of the
@@ -37,8 +38,8 @@ export function nearestFrame(place) {
   return Math.floor(place + 0.5 + kExact);
 }
 
-/** When the frame of a step is exact, in intervals: the last of a turn of "repeat" at the same time as
- * the first of the next. */
+/** When the frame of a step is exact, in intervals: the last of a turn of "repeat" at the same time
+ * as the first of the next. */
 export function timeOfStep(step, frames, loop) {
   return loop === "repeat" ? step - Math.floor(step / frames) : step;
 }

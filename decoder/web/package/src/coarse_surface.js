@@ -1,7 +1,7 @@
-// Attributes of coarse meshes. Positions of a coarse mesh are those of its vertices in the whole mesh,
-// and each of these has one drawn vertex there or, at a seam, several: one for each side. The corners
-// of a coarse triangle take those of one side. Where it has corners on both, texture coordinates of
-// one side are continued to the other.
+// Attributes of coarse meshes. Positions of a coarse mesh are those of its vertices in the whole
+// mesh, and each of these has one drawn vertex there or, at a seam, several: one for each side. The
+// corners of a coarse triangle take those of one side. Where it has corners on both, texture
+// coordinates of one side are continued to the other.
 import { mapped, Unfolding } from "./unfolding.js";
 
 /** The first place of each number below `count` in a list that is ascending, and the end. */
@@ -76,7 +76,8 @@ class Corners {
     numbers.forEach((number, i) => {
       const drawn = this.drawnOf(number);
       const uv = index < 0 ? undefined : this.further[number - this.numDrawn]?.uvs[index];
-      picked.set(uv ?? values.subarray(components * drawn, components * (drawn + 1)), components * i);
+      const value = uv ?? values.subarray(components * drawn, components * (drawn + 1));
+      picked.set(value, components * i);
     });
     return { name, components, values: picked };
   }
@@ -98,14 +99,16 @@ function materialsOf(corners, around, materials) {
       }
     }
     let best;
-    for (const [number, sum] of votes) if (best === undefined || sum > votes.get(best)) best = number;
+    for (const [number, sum] of votes) {
+      if (best === undefined || sum > votes.get(best)) best = number;
+    }
     return best ?? 0;
   });
 }
 
 /** A coarse mesh with attributes. drawn, materialOf: those of the whole mesh, drawn() and the set
- * `material` of attributes(); coarse: { indices, vertices }, triangles and their vertices in the whole
- * mesh. Returns
+ * `material` of attributes(); coarse: { indices, vertices }, triangles and their vertices in the
+ * whole mesh. Returns
  *   places      the drawn vertex, in the whole mesh, of each vertex of the result
  *   vertices    its place in coarse.vertices
  *   indices     triangles of these vertices
@@ -126,7 +129,8 @@ export function coarseSurface({ drawn, materialOf }, coarse) {
   return {
     places, indices,
     vertices: indicesIn(coarse.vertices, places.map((place) => drawn.vertices[place])),
-    attributes: new Map([...drawn.attributes].map(([name, set]) => [name, corners.at(set, numbers)])),
+    attributes: new Map([...drawn.attributes].map(
+      ([name, set]) => [name, corners.at(set, numbers)])),
     materialOf: hasMaterials ? { domain: "triangle", components: 1, integers: materialsOf(
       chosen.map((number) => corners.drawnOf(number)), around, materialOf.integers) } : undefined,
   };

@@ -105,7 +105,8 @@ class OpenStream {
       } catch (missing) {
         if (!(missing instanceof MissingBytes)) throw missing;
         // Of a stream that comes from its start to its end, no more is waited for than is needed.
-        const [start, end] = this.source.whole ? [missing.start, missing.end] : this.widened(missing);
+        const [start, end] =
+          this.source.whole ? [missing.start, missing.end] : this.widened(missing);
         await this.source.load(start, end, signal);
       }
     }

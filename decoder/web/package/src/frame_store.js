@@ -26,8 +26,8 @@ export class FrameStore {
   };
 
   /** decode(index, into, signal): a promise of a frame, with { positions, normals, bounds };
-   * `into`: a frame whose arrays can be filled, or undefined. arrived(): called when a frame, or its
-   * error, is there. */
+   * `into`: a frame whose arrays can be filled, or undefined. arrived(): called when a frame, or
+   * its error, is there. */
   constructor({ decode, bytesPerFrame, maxBytes = kUsualFrameMemory, arrived = () => {} }) {
     this.#decode = decode;
     this.#capacity = Math.max(kMinFrames, Math.floor(maxBytes / Math.max(1, bytesPerFrame)));

@@ -40,8 +40,8 @@ export class LevelGeometries {
     return this.geometry;
   }
 
-  /** The number of the level for a camera: the last one that does not begin farther away. The chosen
-   * one ends nearer than it begins, by its hysteresis. */
+  /** The number of the level for a camera: the last one that does not begin farther away. The
+   * chosen one ends nearer than it begins, by its hysteresis. */
   numberFor({ matrixWorld: cameraMatrix, zoom = 1 }, matrixWorld, chosenLevel) {
     cameraPlace.setFromMatrixPosition(cameraMatrix);
     meshPlace.copy(this.geometry.boundingSphere.center).applyMatrix4(matrixWorld);

@@ -19,8 +19,8 @@ export const kLoops = ["repeat", "once", "pingpong"];
 
 export class Playback {
   /** request(index, signal): a promise of a frame. peek(index): the frame, if no promise is needed
-   * for it. discard(frame) takes those that are not wanted any more; failed(error, index) those that
-   * cannot be had, without which playing goes on. */
+   * for it. discard(frame) takes those that are not wanted any more; failed(error, index) those
+   * that cannot be had, without which playing goes on. */
   constructor({ frames, frameRate, ahead = 4, interpolates = false, request,
     peek = () => undefined, discard = () => {}, failed = () => {} }) {
     Object.assign(this, { frames, frameRate, ahead, interpolates, request, peek, discard, failed });
@@ -80,7 +80,7 @@ export class Playback {
     const { count, current, loop, time } = this;
     // The end of a turn is the start of the next: which of them it is, the frame says.
     const place = loop === "repeat" ? time - Math.floor(current / count) * (count - 1)
-                                    : placeAt(time, count, loop);
+      : placeAt(time, count, loop);
     return (this.speed < 0 ? count - 1 - place : place) / this.frameRate;
   }
 
@@ -230,7 +230,9 @@ export class Playback {
   /** Lets time pass; below 0, none does. Returns { index, frame } to show now, if that is new;
    * without a frame if it cannot be decoded. */
   tick(seconds) {
-    if (!Number.isFinite(seconds)) throw new RangeError("the time that has passed is a finite number");
+    if (!Number.isFinite(seconds)) {
+      throw new RangeError("the time that has passed is a finite number");
+    }
     let shown;
     if (!this.isShown) {
       if (!this.playing && !this.isReady) return undefined;

@@ -1,5 +1,5 @@
 // Which frames a mesh shows, and with which weights: those of the actions of an AnimationMixer, and
-// of its own playback. A place between two frames shows both; frames that are not there are asked for.
+// of its own playback. A place between two frames shows both; missing frames are asked for.
 import { exactPlace, nearestFrame } from "./clip_time.js";
 
 const kNothing = 1e-4; // weights below have no effect

@@ -10,7 +10,8 @@ import { PoseMix } from "./pose_mix.js";
 import { ShownStream } from "./shown_stream.js";
 import { dress, loadLook, usualMaterial } from "./three_look.js";
 
-const kLoopNames = new Map([[LoopRepeat, "repeat"], [LoopOnce, "once"], [LoopPingPong, "pingpong"]]);
+const kLoopNames =
+  new Map([[LoopRepeat, "repeat"], [LoopOnce, "once"], [LoopPingPong, "pingpong"]]);
 
 function givenMaterial(material, decoder) {
   return typeof material === "function" ? material(decoder) : material;

@@ -77,7 +77,8 @@ class FileSource {
   }
 }
 
-/** description: { bytes }, { blob }, { file } or { url, ... }; see HttpSource. progress(loaded, size). */
+/** description: { bytes }, { blob }, { file } or { url, ... }; see HttpSource. progress(loaded,
+ * size). */
 export function openSource(description, progress) {
   const { bytes, blob, file } = description;
   if (bytes) return new BytesSource(bytes);

@@ -1,7 +1,7 @@
-// Texture coordinates across seams. Each side of a seam has its own; a triangle of a coarse mesh may
-// have corners on both. From one of its corners, this walks over the triangles of the whole mesh to
-// the others, and continues the texture coordinates of that corner: where the walk crosses a seam, a
-// similarity lays the texture of the far side beside that of the near one.
+// Texture coordinates across seams. Each side of a seam has its own; a triangle of a coarse mesh
+// may have corners on both. From one of its corners, this walks over the triangles of the whole
+// mesh to the others, and continues the texture coordinates of that corner: where the walk crosses
+// a seam, a similarity lays the texture of the far side beside that of the near one.
 
 const kCrossingSteps = 1; // that a step across a seam counts more
 const kMostSteps = 1 << 12; // triangles that one walk visits

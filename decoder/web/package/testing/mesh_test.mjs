@@ -1,4 +1,5 @@
-// Run by package_test.py: what RLPCMesh shows between frames, and under actions of an AnimationMixer.
+// Run by package_test.py: what RLPCMesh shows between frames, and under actions of an
+// AnimationMixer.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -81,7 +82,7 @@ for (const speed of [1, -1]) {
   }
 }
 
-/** The same actions on an object whose values are all positions: what three.js itself makes of it. */
+/** The same actions on an object whose values are all positions: what three.js makes of it. */
 class Reference {
   constructor(mesh) {
     this.root = new Object3D();

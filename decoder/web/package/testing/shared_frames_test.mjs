@@ -1,5 +1,5 @@
-// Run by package_test.py: frames that meshes of a stream share: clones, limits of memory, frames that
-// are late or damaged, and the end.
+// Run by package_test.py: frames that meshes of a stream share: clones, limits of memory, frames
+// that are late or damaged, and the end.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -174,7 +174,8 @@ test("ScenesAreClonedWithTheirMeshes", async () => {
 });
 
 test("CrossfadesWithTheLeastMemoryShowNoFrameThatHasLeft", async () => {
-  const clips = [{ name: "a", firstFrame: 0, frames: 50 }, { name: "b", firstFrame: 50, frames: 50 }];
+  const clips =
+    [{ name: "a", firstFrame: 0, frames: 50 }, { name: "b", firstFrame: 50, frames: 50 }];
   const { decoder, mesh } = await meshOf({ frames: 100, clips }, { frameMemory: 1 });
   const mixer = new AnimationMixer(mesh);
   const [a, b] = mesh.animations.map((clip) => mixer.clipAction(clip).play());
