@@ -108,8 +108,8 @@ class Oracle:
 
     def is_same(self, a, b):
         """Whether two numbers have one normal."""
-        return all(a not in frame or b not in frame or
-                   max(map(abs, minus(frame[a][0], frame[b][0]))) < 0.001
+        return all(a not in frame or b not in frame
+                   or max(map(abs, minus(frame[a][0], frame[b][0]))) < 0.001
                    for frame in self.frames)
 
     def by_surface(self, number, weight):

@@ -190,8 +190,8 @@ def turns(builder, node, random, part):
 
 
 def folds(builder, node, random, part):
-    """The part beyond x = 0 folds over: a half turn about the z axis, as a morph target. On the way,
-    and along the fold, the surface has other normals than the input."""
+    """The part beyond x = 0 folds over: a half turn about the z axis, as a morph target. On the
+    way, and along the fold, the surface has other normals than the input."""
     mesh = builder.json["meshes"][builder.json["nodes"][node]["mesh"]]
     xyz, normals = part[0], part[1]
     moves = [[-2 * p[0], -2 * p[1] + 0.1 * (p[0] > 0), 0.0] if p[0] > 0 else [0.0] * 3

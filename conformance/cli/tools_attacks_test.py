@@ -116,7 +116,6 @@ class AssetTrees(StreamAttack):
         done = self.ok("rlpcdec", self.attack, "-o", self.path("out.glb"), "--json")
         self.assertIn("nested more than 100 levels", done.json()["remarks"][0])
 
-
     def test_remarks_name_files_that_are_not_utf8(self):
         self.asset(b"[" * 200 + b"]" * 200 + b",")
         name = os.fsdecode(b"o\xff\x1b.glb")
@@ -273,8 +272,8 @@ class EncoderMaterials(MeasuredTest):
 
     def test_many_materials(self):
         mesh = self.obj("".join(f"usemtl {i}\nf 1 2 3\n" for i in range(300000)), "newmtl a\n")
-        self.takes(200 * MB, 1, "materials and parts", "rlpcenc", mesh, "-o", self.path("x.rlpc"), "--max-memory",
-                   200 * MB)
+        self.takes(200 * MB, 1, "materials and parts", "rlpcenc", mesh, "-o", self.path("x.rlpc"),
+                   "--max-memory", 200 * MB)
 
     def test_many_materials_that_no_triangle_has(self):
         mesh = self.obj("usemtl a\nf 1 2 3\n",

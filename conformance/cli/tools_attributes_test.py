@@ -14,7 +14,7 @@ import sys
 from tools_testing import ROOT, ToolsTest, main, write_pc2
 
 sys.path.insert(0, str(ROOT / "conformance" / "specdec"))
-from specdec_testing import stream_of, units_of  # noqa: E402
+from specdec_testing import stream_of, units_of
 
 AROUND, ALONG = 16, 9  # a closed tube whose texture has a seam
 ATTRIBUTES, ASSET = 0x88, 0x89  # types of units
@@ -43,15 +43,17 @@ def faces():
     result = []
     for i in range(ALONG - 1):
         for k in range(AROUND):
-            result.append([((i + b) * AROUND + (k + a) % AROUND, ((k + a) / AROUND, (i + b) / (ALONG - 1)),
-                            (k + a) % AROUND) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))])
+            result.append([((i + b) * AROUND + (k + a) % AROUND,
+                            ((k + a) / AROUND, (i + b) / (ALONG - 1)), (k + a) % AROUND)
+                           for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))])
     for k in range(AROUND):
         first, last = k, (ALONG - 1) * AROUND + k
         after, before = (k + 1) % AROUND, (ALONG - 1) * AROUND + (k + 1) % AROUND
         middle = ALONG * AROUND
-        spots = [(0.5 + 0.5 * math.cos(2 * math.pi * j / AROUND), 0.5 + 0.5 * math.sin(2 * math.pi * j / AROUND))
-                 for j in (k, k + 1)]
-        result.append([(after, spots[1], AROUND), (first, spots[0], AROUND), (middle, (0.5, 0.5), AROUND)])
+        spots = [(0.5 + 0.5 * math.cos(2 * math.pi * j / AROUND),
+                  0.5 + 0.5 * math.sin(2 * math.pi * j / AROUND)) for j in (k, k + 1)]
+        result.append([(after, spots[1], AROUND), (first, spots[0], AROUND),
+                       (middle, (0.5, 0.5), AROUND)])
         result.append([(last, spots[0], AROUND + 1), (before, spots[1], AROUND + 1),
                        (middle + 1, (0.5, 0.5), AROUND + 1)])
     return result
@@ -93,7 +95,8 @@ class Mesh:
                 group = " ".join(words)
             elif key == "f":
                 corners = [(w + "//").split("/")[:3] for w in words]
-                corners = [(int(v) - 1, uv[int(t) - 1] if t else None, normals[int(n) - 1] if n else None)
+                corners = [(int(v) - 1, uv[int(t) - 1] if t else None,
+                            normals[int(n) - 1] if n else None)
                            for v, t, n in corners]
                 for k in range(1, len(corners) - 1):
                     self.triangles.append((corners[0], corners[k], corners[k + 1]))
@@ -102,7 +105,8 @@ class Mesh:
 
     def corners(self):
         """{(triangle as a set of vertices, vertex): (uv, normal)}"""
-        return {(frozenset(v for v, _, _ in t), v): (uv, n) for t in self.triangles for v, uv, n in t}
+        return {(frozenset(v for v, _, _ in t), v): (uv, n)
+                for t in self.triangles for v, uv, n in t}
 
 
 class AttributesTest(ToolsTest):
@@ -143,7 +147,8 @@ class ObjAttributes(AttributesTest):
         self.ok("rlpcdec", stream, "-o", self.path("again"))
         for f in range(6):
             name = f"frame_000{f}.obj"
-            self.assertEqual((self.path("again") / name).read_bytes(), (self.path("out") / name).read_bytes())
+            self.assertEqual((self.path("again") / name).read_bytes(),
+                             (self.path("out") / name).read_bytes())
 
     def test_seams_stay(self):
         self.path("a.obj").write_text(obj_text())
@@ -154,9 +159,11 @@ class ObjAttributes(AttributesTest):
             values = {}
             for (_, vertex), (uv, normal) in mesh.corners().items():
                 values.setdefault(vertex, set()).add((uv, normal))
-            return {v: (len({uv for uv, _ in of}), len({n for _, n in of})) for v, of in values.items()}
+            return {v: (len({uv for uv, _ in of}), len({n for _, n in of}))
+                    for v, of in values.items()}
         wanted, found = seams(Mesh(self.path("a.obj"))), seams(Mesh(self.path("b.obj")))
-        self.assertEqual({v: uv for v, (uv, _) in found.items()}, {v: uv for v, (uv, _) in wanted.items()})
+        self.assertEqual({v: uv for v, (uv, _) in found.items()},
+                         {v: uv for v, (uv, _) in wanted.items()})
         self.assertEqual(max(uv for uv, _ in found.values()), 3)  # at the caps
         # Every generation has the same values.
         second = self.encode_to("b.rlpc", self.path("b.obj"))
@@ -180,13 +187,16 @@ class ObjAttributes(AttributesTest):
         marks = {0: "o side\nusemtl green\n", 64: "g upper\n", 128: "o caps\ng\nusemtl red skin\n"}
         text = obj_text(between=lambda f: marks.get(f, ""))
         self.path("in").mkdir()
-        (self.path("in") / "a.mtl").write_text("newmtl green\nmap_Kd maps/leaf.png\nmap_Ks gloss.png\nnewmtl red skin\nKd 1 0 0\n")
+        (self.path("in") / "a.mtl").write_text("newmtl green\nmap_Kd maps/leaf.png\n"
+                                               "map_Ks gloss.png\nnewmtl red skin\nKd 1 0 0\n")
         (self.path("in") / "maps").mkdir()
         leaf = b"\x89PNG of a leaf"
         (self.path("in") / "maps/leaf.png").write_bytes(leaf)
         (self.path("in") / "a.obj").write_text("mtllib a.mtl\n" + text)
-        result = self.ok("rlpcenc", self.path("in/a.obj"), "-o", self.path("a.rlpc"), "--keep-order")
-        self.assertIn("dropped: 1 texture (gloss.png); only those of map_Kd, map_Ke and norm are kept", result.err)
+        result = self.ok("rlpcenc", self.path("in/a.obj"), "-o", self.path("a.rlpc"),
+                         "--keep-order")
+        self.assertIn("dropped: 1 texture (gloss.png); only those of map_Kd, map_Ke and norm are "
+                      "kept", result.err)
         self.fails(64, "a.mtl: is also an input", "rlpcenc", self.path("in/a.obj"), "-o",
                    self.path("in/a.mtl"))
         for output, mesh, library in (("b.obj", "b.obj", "b.mtl"), ("c.pc2", "c.obj", "c.mtl"),
@@ -200,7 +210,8 @@ class ObjAttributes(AttributesTest):
             self.assertIn("newmtl red_skin\nKd 1 0 0\n", lines)
             self.assertEqual((self.path(mesh).parent / image).read_bytes(), leaf)
             wanted = Mesh(self.path("in/a.obj"))
-            materials = {frozenset(v for v, _, _ in t): m for t, m in zip(wanted.triangles, wanted.materials)}
+            materials = {frozenset(v for v, _, _ in t): m
+                         for t, m in zip(wanted.triangles, wanted.materials)}
             groups = set()
             for t, material, group in zip(found.triangles, found.materials, found.groups):
                 name = materials[frozenset(v for v, _, _ in t)]
@@ -226,13 +237,15 @@ class ObjAttributes(AttributesTest):
             (self.path("in") / "a.obj").write_text(f"mtllib {name}\nusemtl m\n" + obj_text())
             result = self.ok("rlpcenc", self.path("in/a.obj"), "-o", self.path("a.rlpc"))
             self.assertNotIn("secret.png", result.err)
-            self.assertEqual([code for code, _ in units_of(self.path("a.rlpc").read_bytes()) if code == ASSET], [])
+            self.assertEqual([code for code, _ in units_of(self.path("a.rlpc").read_bytes())
+                              if code == ASSET], [])
 
     def test_other_texture_coordinates_in_a_later_file_are_noted(self):
         source = self.sequence()
         later = source / "tube_3.obj"
         later.write_text(later.read_text().replace("\nvt 0 0\n", "\nvt 0.25 0\n"))
-        note = f"{later}: uv0 differs from that of {source / 'tube_0.obj'}, which is kept for all frames"
+        first = source / "tube_0.obj"
+        note = f"{later}: uv0 differs from that of {first}, which is kept for all frames"
         result = self.ok("rlpcenc", source, "-o", self.path("a.rlpc"), "--keep-order")
         self.assertEqual(result.err.count(note), 1, result.err)
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("out"))
@@ -266,7 +279,8 @@ class ObjAttributes(AttributesTest):
         self.path("plain.obj").write_text(obj_text(uv=False, normals=False))
         self.ok("rlpcdec", self.encode_to("a.rlpc", self.path("a.obj")), "--no-attributes", "-o",
                 self.path("b.obj"))
-        self.ok("rlpcdec", self.encode_to("p.rlpc", self.path("plain.obj")), "-o", self.path("c.obj"))
+        self.ok("rlpcdec", self.encode_to("p.rlpc", self.path("plain.obj")), "-o",
+                self.path("c.obj"))
         self.assertEqual(self.path("b.obj").read_bytes(), self.path("c.obj").read_bytes())
 
     def test_indices_out_of_range_are_named(self):
@@ -282,13 +296,15 @@ class ObjAttributes(AttributesTest):
         stream = self.encode_to("a.rlpc", self.sequence())
         self.ok("rlpcdec", stream, "--no-attributes", "-o", self.path("plain"))
         data = stream.read_bytes()
-        units = [(code, payload[:-9] if code == ATTRIBUTES else payload) for code, payload in units_of(data)]
+        units = [(code, payload[:-9] if code == ATTRIBUTES else payload)
+                 for code, payload in units_of(data)]
         stream.write_bytes(stream_of(data, units))
-        self.fails(1, ["a.rlpc: ", "frames are written without attributes"], "rlpcdec", stream, "-o",
-                   self.path("out"), "--quiet")
+        self.fails(1, ["a.rlpc: ", "frames are written without attributes"], "rlpcdec", stream,
+                   "-o", self.path("out"), "--quiet")
         for f in range(6):
             name = f"frame_000{f}.obj"
-            self.assertEqual((self.path("out") / name).read_bytes(), (self.path("plain") / name).read_bytes())
+            self.assertEqual((self.path("out") / name).read_bytes(),
+                             (self.path("plain") / name).read_bytes())
 
     def test_a_damaged_unit_can_be_left_out(self):
         self.path("a.obj").write_text(obj_text())
@@ -311,7 +327,8 @@ class ObjAttributes(AttributesTest):
             stream = self.encode_to("a.rlpc", source, *options)
             said = self.ok("rlpcinfo", stream, "--extract", "components=0", "-o", cut).out.decode()
             self.assertEqual("attributes are dropped: " in said, not stay)
-            report = self.ok("rlpcinfo", stream, "--extract", "components=0", "-o", cut, "--json").json()
+            report = self.ok("rlpcinfo", stream, "--extract", "components=0", "-o", cut,
+                             "--json").json()
             self.assertEqual(report["attributes_dropped"], not stay)
             self.ok("rlpcval", cut)
             self.ok("rlpcdec", cut, "-o", self.path("out/%04d.obj"))
@@ -336,12 +353,14 @@ class ObjAttributes(AttributesTest):
         report = json.loads(self.ok("rlpcinfo", stream, "--json").out)
         self.assertEqual([(a["name"], a["domain"], a["kind"]) for a in report["attributes"]],
                          [("normal", "corners", "smoothing"), ("uv0", "corners", "integers")])
-        size = sum(len(payload) for code, payload in units_of(stream.read_bytes()) if code == ATTRIBUTES)
+        size = sum(len(payload)
+                   for code, payload in units_of(stream.read_bytes()) if code == ATTRIBUTES)
         self.assertEqual(report["bits"]["attributes"], 8 * size)
         self.assertEqual(sum(report["bits"].values()), 8 * len(stream.read_bytes()))
         # One of which only the frames can be decoded.
         data = stream.read_bytes()
-        units = [(code, payload[:-9] if code == ATTRIBUTES else payload) for code, payload in units_of(data)]
+        units = [(code, payload[:-9] if code == ATTRIBUTES else payload)
+                 for code, payload in units_of(data)]
         stream.write_bytes(stream_of(data, units))
         self.assertIn("cannot be decoded: ", self.ok("rlpcinfo", stream).out.decode())
 
@@ -421,8 +440,8 @@ for polygon in mesh.polygons:
 class BlenderAttributes(AttributesTest):
     def loops(self, verb, path):
         """{position: set of uv} of all loops."""
-        done = subprocess.run(["blender", "-b", "--python-exit-code", "1", "--python-expr", BLENDER, "--", verb,
-                               str(path)], capture_output=True, text=True, check=False)
+        done = subprocess.run(["blender", "-b", "--python-exit-code", "1", "--python-expr", BLENDER,
+                               "--", verb, str(path)], capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
         loops = [tuple(map(float, line.split()[1:])) for line in done.stdout.splitlines()
                  if line.startswith("LOOP")]
@@ -433,7 +452,8 @@ class BlenderAttributes(AttributesTest):
         if not shutil.which("blender"):
             self.skipTest("needs blender")
         wanted = self.loops("export", self.path("a.obj"))
-        self.ok("rlpcenc", self.path("a.obj"), "-o", self.path("a.rlpc"), "--max-error", 1e-5, "--quiet")
+        self.ok("rlpcenc", self.path("a.obj"), "-o", self.path("a.rlpc"), "--max-error", 1e-5,
+                "--quiet")
         for name in ("b.obj", "b.ply"):
             self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path(name))
             # Quads have become triangles: compare the distinct loops.

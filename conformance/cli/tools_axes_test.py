@@ -83,7 +83,8 @@ class Axes(ToolsTest):
             self.assertEqual(told.get("metadata"), expected)
         # glTF says it.
         glb = ROOT / "streams/inputs/tulip.glb"
-        for options, expected in (([], {"upAxis": "Y", "metersPerUnit": 1}), (["--axes", "x,z,-y"], None),
+        for options, expected in (([], {"upAxis": "Y", "metersPerUnit": 1}),
+                                  (["--axes", "x,z,-y"], None),
                                   (["--metadata", self.path("list.json")], [1]),
                                   (["--metadata", self.path("mine.json")],
                                    {"take": 7, "upAxis": "?", "metersPerUnit": 1})):

@@ -11,8 +11,8 @@ import struct
 from tools_cut_test import CutTest
 from tools_testing import ROOT, main, read_rlpd, run
 
-import specdec  # noqa: E402  (tools_cut_test knows the folder)
-from specdec_testing import PROGRAM, coarse_mesh  # noqa: E402
+import specdec  # tools_cut_test knows the folder
+from specdec_testing import PROGRAM, coarse_mesh
 
 STREAMS = ("v1.0/accept/CON/CON-0001a", "v1.0/accept/VOR/VOR-0001a", "v1.0/accept/MIX/MIX-0101a",
            "v1.1/accept/LAY/LAY-0001a", "v1.1/accept/SLI/SLI-0001a", "v1.1/accept/MIX/MIX-0201a",

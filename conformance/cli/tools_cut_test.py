@@ -12,9 +12,9 @@ from tools_testing import ROOT, ToolsTest, limited, main, run
 
 for folder in ("judge", "specdec", "rlpcgen"):
     sys.path.insert(0, str(ROOT / "conformance" / folder))
-import random_high  # noqa: E402
-import spec_program  # noqa: E402
-import specdec  # noqa: E402
+import random_high
+import spec_program
+import specdec
 
 STREAM_HEADER_BYTES, UNIT_BYTES = 10, 9  # header and CRC
 GOF, GOF_INDEX, GOF_HASH, ATTRIBUTES, END = 4, 129, 130, 136, 5
@@ -190,8 +190,8 @@ class Cutting(CutTest):
         for gof in self.skinned_gofs(path):
             sizes = [cut["bytes"] for cut in gof["cut_to_temporal_layers"]]
             for layer in range(1, len(sizes)):
-                self.assertRegex(said, rf"temporal layer {layer} +{sizes[layer] - sizes[layer - 1]} "
-                                       rf".* {sizes[layer]}\n")
+                added = sizes[layer] - sizes[layer - 1]
+                self.assertRegex(said, rf"temporal layer {layer} +{added} .* {sizes[layer]}\n")
         self.assertRegex(self.extract(path, "temporal=2").out.decode(),
                          r"2 of [3-8] temporal layers")
 
@@ -225,9 +225,11 @@ class Cutting(CutTest):
         self.assertNotIn("nothing was dropped", said)
         self.assertIn("nothing was dropped", self.extract(path, "components=9999").out.decode())
         self.assertIn("hashes of GOFs that lack slices were not verified",
-                      self.ok("rlpcdec", path, "-o", self.path("a.rlpd"), "--max-components", 0).err)
+                      self.ok("rlpcdec", path, "-o", self.path("a.rlpd"),
+                              "--max-components", 0).err)
         self.assertIn("without hashes",
-                      self.ok("rlpcdec", path, "-o", self.path("a.rlpd"), "--max-components", 9999).err)
+                      self.ok("rlpcdec", path, "-o", self.path("a.rlpd"),
+                              "--max-components", 9999).err)
 
     def test_as_many_groups_as_are_asked_for(self):
         """At most one group per layer, and one per trajectory."""

@@ -19,10 +19,10 @@ STEP = 1 / 4096  # decoded texture coordinates, by default
 def picture():
     """A PNG file of one pixel."""
     def chunk(name, data):
-        return (struct.pack(">I", len(data)) + name + data +
-                struct.pack(">I", zlib.crc32(name + data)))
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0)) +
-            chunk(b"IDAT", zlib.compress(b"\0\xff\0\0")) + chunk(b"IEND", b""))
+        return (struct.pack(">I", len(data)) + name + data
+                + struct.pack(">I", zlib.crc32(name + data)))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(b"\0\xff\0\0")) + chunk(b"IEND", b""))
 
 
 class EqualSets(ToolsTest):

@@ -4,7 +4,6 @@
     tools_errors_test.py --bin BUILD/bin [unittest arguments, such as BadInput]
 """
 
-import json
 import math
 import os
 import struct
@@ -15,7 +14,7 @@ import zlib
 from tools_testing import INPUTS, ROOT, Tools, ToolsTest, limited, main, run, write_pc2
 
 sys.path.insert(0, str(ROOT / "conformance" / "specdec"))
-from specdec_testing import stream_of, units_of  # noqa: E402
+from specdec_testing import stream_of, units_of
 
 METADATA = 0x83
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
@@ -231,13 +230,13 @@ class BadOutput(ToolsTest):
         self.assertEqual(result.code, 2, result.err)
         self.assertIn("none/x", result.err)
 
-
     def test_a_full_disk_on_standard_output(self):
         self.assertEqual(self.encode_to(self.path("a.rlpc")).code, 0)
         stream, mesh = self.path("a.rlpc"), INPUTS / "elephant.obj"
         for code, command in (
                 (4, ["rlpcinfo", stream]), (4, ["rlpcinfo", stream, "--json"]),
-                (4, ["rlpcinfo", stream, "--trace"]), (4, ["rlpcdec", stream, "--verify", "--json"]),
+                (4, ["rlpcinfo", stream, "--trace"]),
+                (4, ["rlpcdec", stream, "--verify", "--json"]),
                 (4, ["rlpcval", stream]), (4, ["rlpcval", "--explain", "R-UNT-03"]),
                 (2, ["rlpccmp", stream, stream]), (2, ["rlpccmp", stream, stream, "--json"]),
                 (1, ["rlpcenc", mesh, "--dry-run"]), (1, ["rlpcenc", mesh, "--dry-run", "--json"])):
@@ -311,8 +310,8 @@ class BadStreams(ToolsTest):
 
     def test_limits(self):
         for option in (["--max-vertices", 500], ["--max-memory", "50KiB"]):
-            self.fails(3, "than the limit (--max-", "rlpcdec", self.path("a.rlpc"), "-o", self.path("x.rlpd"),
-                       *option)
+            self.fails(3, "than the limit (--max-", "rlpcdec", self.path("a.rlpc"), "-o",
+                       self.path("x.rlpd"), *option)
         self.assertEqual(self.files(), ["a.rlpc"])
         self.ok("rlpcdec", self.path("a.rlpc"), "--verify", "--max-vertices", 538, "--max-memory",
                 "100MiB")

@@ -13,7 +13,7 @@ import struct
 import subprocess
 import time
 
-from tools_testing import INPUTS, Tools, ToolsTest, main, run, write_pc2
+from tools_testing import Tools, ToolsTest, main, run, write_pc2
 
 
 NO_CORE = {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_CORE, (0, 0))}
@@ -155,8 +155,8 @@ class SamePlaces(ToolsTest):
         self.assertEqual(frame.read_bytes(), last)
         self.assertFalse(out.exists())
         # The mesh next to the cache, which the command line does not name.
-        self.fails(64, "choose another name", "rlpccmp", self.path("clip.pc2"), self.path("clip.pc2"),
-                   "--csv", self.path("clip.obj"))
+        self.fails(64, "choose another name", "rlpccmp", self.path("clip.pc2"),
+                   self.path("clip.pc2"), "--csv", self.path("clip.obj"))
         buffer = struct.pack("<9f3H", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2)
         self.path("data.bin").write_bytes(buffer)
         self.path("a.gltf").write_text(json.dumps({
@@ -173,7 +173,8 @@ class SamePlaces(ToolsTest):
         skin = b"\x89PNG\r\n\x1a\n the picture"
         self.path("skin.png").write_bytes(skin)
         for name, content in (("data.bin", buffer), ("skin.png", skin)):
-            self.fails(64, "is also an input", "rlpcenc", self.path("a.gltf"), "-o", self.path(name))
+            self.fails(64, "is also an input", "rlpcenc", self.path("a.gltf"), "-o",
+                       self.path(name))
             self.assertEqual(self.path(name).read_bytes(), content)
         self.ok("rlpcenc", self.path("a.gltf"), "-o", out)
 
@@ -210,7 +211,8 @@ class SamePlaces(ToolsTest):
         for option in ("--csv", "--html"):
             self.refused("choose another name", "rlpccmp", *pair, option, obj)
             self.refused("choose another name", "rlpccmp", *pair, option, pc2)
-            self.refused("choose another name", "rlpccmp", *pair, "--stream", stream, option, stream)
+            self.refused("choose another name", "rlpccmp", *pair, "--stream", stream, option,
+                         stream)
         self.refused("choose another name", "rlpccmp", *pair, "--csv", self.path("x"), "--html",
                      self.path("x"))
         self.refused("cannot both", "rlpccmp", *pair, "--csv", "-", "--json")

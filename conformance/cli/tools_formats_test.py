@@ -27,8 +27,8 @@ def ply(xyz, polygons, encoding):
         body += "".join(" ".join(map(str, (len(p), *p))) + "\n" for p in polygons)
         return (header + body).encode()
     order = "<" if "little" in encoding else ">"
-    return header.encode() + b"".join(struct.pack(order + "3fB", *p, 255) for p in points) + b"".join(
-        struct.pack(f"{order}B{len(p)}i", len(p), *p) for p in polygons)
+    return (header.encode() + b"".join(struct.pack(order + "3fB", *p, 255) for p in points)
+            + b"".join(struct.pack(f"{order}B{len(p)}i", len(p), *p) for p in polygons))
 
 
 def off(xyz, polygons):
@@ -60,7 +60,8 @@ class FormatsIn(ToolsTest):
         self.assertEqual(self.stream("-", "--points", self.path("clip.mdd"), input=mesh), wanted)
         for cache in ("clip.mdd", "clip.pc2"):
             data = self.path(cache).read_bytes()
-            self.assertEqual(self.stream(self.path("clip.off"), "--points", "-", input=data), wanted)
+            self.assertEqual(self.stream(self.path("clip.off"), "--points", "-", input=data),
+                             wanted)
         writers = {"off": lambda xyz: off(xyz, triangles)}
         for encoding in ("ascii", "binary_little_endian", "binary_big_endian"):
             writers[encoding] = lambda xyz, e=encoding: ply(xyz, triangles, e)
@@ -111,7 +112,8 @@ class FormatsIn(ToolsTest):
         self.fails(1, words, "rlpcenc", mesh, "--points", points, "--no-weld", "-o", stream)
         self.fails(2, words, "rlpccmp", points, stream, "--no-weld")
         self.fails(2, "out.rlpc: --no-weld is for .glb", "rlpccmp", points, stream, "--no-weld-b")
-        self.fails(2, "out.rlpc: --animation is for .glb", "rlpccmp", points, stream, "--animation-b", "Walk")
+        self.fails(2, "out.rlpc: --animation is for .glb", "rlpccmp", points, stream,
+                   "--animation-b", "Walk")
         self.fails(64, "--fps: neither A nor B", "rlpccmp", points, stream, "--fps", 25)
 
     def test_broken_files_are_named(self):
@@ -147,8 +149,9 @@ class PointClouds(ToolsTest):
     def roundtrip(self, *options):
         """(bytes, cluster count, LCF flags) of the only GOF."""
         stream, cloud = self.path("cloud.rlpc"), self.path("cloud.obj")
-        report = self.ok("rlpcenc", cloud, "--points", self.path("clip.pc2"), "-o", stream, "--json",
-                         "--keep-order", "--profile", "baseline", "--kg", 0.5, *options).json()
+        report = self.ok("rlpcenc", cloud, "--points", self.path("clip.pc2"), "-o", stream,
+                         "--json", "--keep-order", "--profile", "baseline", "--kg", 0.5,
+                         *options).json()
         self.assertTrue(report["target_met"])
         self.ok("rlpcdec", stream, "-o", self.path("out.pc2"), "-q")
         self.assertEqual(read_obj(self.path("out.obj"))[1], [])
@@ -210,7 +213,7 @@ class MddTimes(ToolsTest):
                   "--preset", "fast", "--points"]
         nan, cache = float("nan"), self.path("clip.mdd")
         for times, warned in (([0.2, 0.1, 0], True), ([0, nan, 1], True), ([0, 1, math.inf], True),
-                            ([0, 0, 0], False), ([0, 0.1, 0.3], False), ([0, 0.1, 0.2], False)):
+                              ([0, 0, 0], False), ([0, 0.1, 0.3], False), ([0, 0.1, 0.2], False)):
             cache.write_bytes(mdd(frames, times))
             self.assertEqual("not finite and ascending" in self.ok(*encode, cache).err, warned,
                              times)
@@ -219,7 +222,7 @@ class MddTimes(ToolsTest):
         cache = self.path("clip.pc2")
         good = cache.read_bytes()
         for at, value, warned in ((20, nan, True), (24, nan, True), (24, -math.inf, True),
-                                (24, 0, False)):
+                                  (24, 0, False)):
             cache.write_bytes(good[:at] + struct.pack("<f", value) + good[at + 4:])
             self.assertEqual("the file may be damaged" in self.ok(*encode, cache).err, warned,
                              value)

@@ -43,8 +43,8 @@ class Frames(ToolsTest):
     def test_frames_share_units(self):
         stream = self.path("a.rlpc")
         for number, units in ((1, 20), (6, 5), (100, 2)):  # the first frame has its own
-            self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "inter", "--gof", 20,
-                        "--frames-per-unit", number)
+            self.encode(stream, "--kg", 0.5, "--profile", "high", "--gof-kind", "inter", "--gof",
+                        20, "--frames-per-unit", number)
             self.ok("rlpcdec", stream, "--verify")
             gofs = self.ok("rlpcinfo", stream, "--json").json()["gofs"]
             self.assertEqual([gof["num_frame_units"] for gof in gofs], [units] * 3)
@@ -86,7 +86,8 @@ class Frames(ToolsTest):
         mesh, stream = INPUTS / "elephant.obj", self.path("a.rlpc")
         for options, words in (
                 (("--profile", "high", "--partition", "seeds"), "patches are not made from seeds"),
-                (("--profile", "main", "--partition", "kway"), "--partition needs --profile baseline"),
+                (("--profile", "main", "--partition", "kway"),
+                 "--partition needs --profile baseline"),
                 (("--profile", "main", "--patches", 3), "need --profile high and --gof-kind inter"),
                 (("--profile", "high", "--patches", 2000), "2000 not in range")):
             self.fails(64, words, "rlpcenc", mesh, "-o", stream, *options)
@@ -112,9 +113,9 @@ class Frames(ToolsTest):
         self.assertEqual(*streams)
 
     def test_the_choices_in_words(self):
-        said = self.ok("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2", "-o",
-                       self.path("a.rlpc"), "-v", "--kg", 0.5, "--gof", 20, "--profile", "high",
-                       "--gof-kind", "inter")
+        said = self.ok("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2",
+                       "-o", self.path("a.rlpc"), "-v", "--kg", 0.5, "--gof", 20, "--profile",
+                       "high", "--gof-kind", "inter")
         self.assertIn("3 inter GOFs, ", said.out.decode())
         self.assertRegex(said.out.decode(), "[1-3] inter GOFs? with pattern [a-z]")
 
@@ -194,8 +195,8 @@ class Frames(ToolsTest):
     def test_lossless_without_a_grid(self):
         mesh, points = INPUTS / "elephant.obj", INPUTS / "elephant.pc2"
         out = self.path("a.rlpc")
-        self.fails(1, "have no common grid of 24 bits or fewer. Use --lossless BITS", "rlpcenc", mesh,
-                   "--points", points, "-o", out, "--profile", "high", "--lossless")
+        self.fails(1, "have no common grid of 24 bits or fewer. Use --lossless BITS", "rlpcenc",
+                   mesh, "--points", points, "-o", out, "--profile", "high", "--lossless")
         self.assertFalse(out.exists())
         for options, words in ((("--lossless", 25), "found `25`"),
                                (("--lossless", 1), "from 2 to 24"),

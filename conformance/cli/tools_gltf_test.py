@@ -13,7 +13,7 @@ from random import Random
 from tools_testing import INPUTS, ROOT, ToolsTest, main, read_pc2
 
 sys.path.insert(0, str(ROOT / "conformance" / "tools"))
-import make_gltf  # noqa: E402
+import make_gltf
 
 TULIP = INPUTS / "tulip.glb"
 # Vertices in the order of the scene, before welding.
@@ -45,8 +45,8 @@ class GltfInput(ToolsTest):
 
     def test_every_container_gives_the_same_stream(self):
         document, data = parts(TULIP.read_bytes())
-        uris = {"data.gltf": "data:application/octet-stream;base64," +
-                base64.b64encode(data).decode(), "file.gltf": "tulip%20data.bin"}
+        uris = {"data.gltf": "data:application/octet-stream;base64,"
+                + base64.b64encode(data).decode(), "file.gltf": "tulip%20data.bin"}
         self.path("tulip data.bin").write_bytes(data)
         for name, uri in uris.items():
             document["buffers"][0]["uri"] = uri
@@ -145,16 +145,16 @@ class GltfInput(ToolsTest):
 
     def test_all_joins_animations_in_sequence(self):
         whole = self.frames("--animation", "all")
-        each = (self.frames("--animation", "Sway", "--fps", 24) +
-                self.frames("--animation", "Visit"))
+        each = (self.frames("--animation", "Sway", "--fps", 24)
+                + self.frames("--animation", "Visit"))
         self.assertEqual(len(whole), len(each))
         for a, b in zip(whole, each):
             self.assert_near(a, b)
 
     def test_rlpccmp_reads_it_as_rlpcenc_does(self):
         for options in ([], ["--animation", "Visit"],
-                        ["--animation", "Visit", "--animation", 0], ["--animation", "all", "--fps", 12],
-                        ["--no-weld"]):
+                        ["--animation", "Visit", "--animation", 0],
+                        ["--animation", "all", "--fps", 12], ["--no-weld"]):
             self.ok("rlpcenc", TULIP, "-o", self.path("a.rlpc"), "--order-map", self.path("map"),
                     "--kg", 0.5, "--preset", "fast", "--quiet", *options)
             self.ok("rlpccmp", TULIP, self.path("a.rlpc"), "--order-map", self.path("map"),
@@ -194,8 +194,8 @@ def animated(clips):
     document["buffers"] = [{"byteLength": len(data)}]
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
-    return (struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(data), len(text), 0x4E4F534A) +
-            text + struct.pack("<II", len(data), 0x004E4942) + data)
+    return (struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(data), len(text), 0x4E4F534A)
+            + text + struct.pack("<II", len(data), 0x004E4942) + data)
 
 
 def durations(glb):
@@ -290,7 +290,8 @@ class GltfTime(ToolsTest):
 
     def test_models_of_others(self):
         folder = ROOT.parent / "shared" / "data" / "gltf"
-        names = [folder / f"{name}.glb" for name in ("fox", "robot", "q-trex", "interpolation-test")]
+        names = [folder / f"{name}.glb"
+                 for name in ("fox", "robot", "q-trex", "interpolation-test")]
         if not all(name.exists() for name in names):
             self.skipTest("needs the models in ../shared/data/gltf")
         for name in names:
@@ -313,7 +314,8 @@ class GltfErrors(ToolsTest):
         self.fails(1, words, "rlpcenc", TULIP, "--points", cache, *output)
         self.fails(1, words, "rlpcenc", TULIP, "--points", cache, "--animation", "all", *output)
         self.path("tulip").write_bytes(TULIP.read_bytes())  # known by its contents
-        self.fails(1, "takes no --points", "rlpcenc", self.path("tulip"), "--points", cache, *output)
+        self.fails(1, "takes no --points", "rlpcenc", self.path("tulip"), "--points", cache,
+                   *output)
         self.fails(1, "takes no --points", "rlpcenc", TULIP, "--points", "-", "--low-delay",
                    "--profile", "high", *output)
         self.fails(2, words, "rlpccmp", TULIP, TULIP, "--points-b", cache)
@@ -373,8 +375,8 @@ class GltfErrors(ToolsTest):
         self.refused(['"Dance"', '"Sway", "Visit"'], TULIP.read_bytes(), "--animation", "Dance")
         elephant = INPUTS / "elephant.obj"
         for source in ([elephant], [elephant, "--points", INPUTS / "elephant.pc2"], [INPUTS]):
-            self.fails(1, "--animation is for .glb and .gltf files", "rlpcenc", *source, "--animation", "Walk", "-o",
-                       self.path("a.rlpc"))
+            self.fails(1, "--animation is for .glb and .gltf files", "rlpcenc", *source,
+                       "--animation", "Walk", "-o", self.path("a.rlpc"))
 
     def test_standard_input_is_named(self):
         whole = TULIP.read_bytes()

@@ -59,7 +59,8 @@ class Help(ToolsTest):
             entries = re.findall(r"^  (-\S.*(?:\n {26}.*)*)", page, re.MULTILINE)
             for entry in entries:
                 self.assertRegex(entry, r"(?:  |\n {26})[A-Za-z1-9].{6,}", (tool, entry))
-        for option, value in (("--metadata", "FILE"), ("--max-memory", "SIZE"), ("--kg", "PERCENT")):
+        for option, value in (("--metadata", "FILE"), ("--max-memory", "SIZE"),
+                              ("--kg", "PERCENT")):
             self.assertRegex(self.page("rlpcenc", "--help-all"), rf"  {option} {value}  ")
 
     def test_the_profile_of_an_option(self):
@@ -94,11 +95,13 @@ class Help(ToolsTest):
 
     def test_what_was_meant(self):
         for tool, words, said in (
-                ("rlpcenc", ["cow.obj", "cow.pc2", "-o", "x.rlpc"], "did you mean --points cow.pc2?"),
+                ("rlpcenc", ["cow.obj", "cow.pc2", "-o", "x.rlpc"],
+                 "did you mean --points cow.pc2?"),
                 ("rlpccmp", ["a", "b", "a.mdd"], "did you mean --points-a a.mdd?"),
                 ("rlpccmp", ["cow.obj", "cow.pc2", "fox.rlpc"],
                  "unexpected argument cow.pc2; did you mean --points-a cow.pc2?"),
-                ("rlpcdec", ["a.rlpc", "--verfy"], "unknown option --verfy; did you mean --verify?"),
+                ("rlpcdec", ["a.rlpc", "--verfy"],
+                 "unknown option --verfy; did you mean --verify?"),
                 ("rlpcinfo", ["a.rlpc", "b.rlpc"], "unexpected argument b.rlpc")):
             self.fails(64, said, tool, *words)
 

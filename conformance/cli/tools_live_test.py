@@ -36,8 +36,9 @@ class Live(ToolsTest):
         encoder = subprocess.Popen(
             [Tools.folder / "rlpcenc", MESH, "--points", "-", "-o", "-", *OPTIONS, "--kg", "0.5"],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        decoder = subprocess.Popen([Tools.folder / "rlpcdec", "-", "-o", "-", "--format", "pc2", "--quiet"],
-                                   stdin=encoder.stdout, stdout=subprocess.PIPE)
+        decoder = subprocess.Popen(
+            [Tools.folder / "rlpcdec", "-", "-o", "-", "--format", "pc2", "--quiet"],
+            stdin=encoder.stdout, stdout=subprocess.PIPE)
         encoder.stdout.close()
         self.addCleanup(decoder.stdout.close)
         os.set_blocking(decoder.stdout.fileno(), False)
@@ -87,7 +88,8 @@ class Live(ToolsTest):
             self.assertEqual(read_pc2(part), every[frame:frame + 1])
         self.fails(3, "open_end_flag: more frames than the limit (--max-frames 100)", "rlpcdec",
                    stream, "--verify", "--max-frames", 100)
-        self.fails(64, "within 0-24", "rlpcdec", stream, "-o", self.path("x.pc2"), "--frames", "25-")
+        self.fails(64, "within 0-24", "rlpcdec", stream, "-o", self.path("x.pc2"), "--frames",
+                   "25-")
 
     def test_a_known_number_of_frames_gives_no_open_end(self):
         stream = self.path("a.rlpc")
@@ -190,7 +192,8 @@ class Live(ToolsTest):
         _, start, end = frames[13]  # in the second GOF
         damaged = bytearray(data)
         damaged[end - 1] ^= 1
-        self.fails(1, "R-UNT-03", "rlpcdec", self.write("x.rlpc", damaged), "-o", self.path("x.pc2"))
+        self.fails(1, "R-UNT-03", "rlpcdec", self.write("x.rlpc", damaged), "-o",
+                   self.path("x.pc2"))
         for threads in ((), ("--threads", 3)):
             said, found = self.conceal(damaged, threads)
             self.assertIn("frames 13 to 19 are lost, and repeat the one before", said)
@@ -238,7 +241,8 @@ class Live(ToolsTest):
             code = 1 if options == ("--lossless",) else 64
             self.fails(code, words, "rlpcenc", MESH, "--points", INPUTS / "elephant.pc2", *OPTIONS,
                        *options, *(() if "--dry-run" in options else ("-o", self.path("a.rlpc"))))
-        self.fails(64, "needs --profile high", "rlpcenc", MESH, "--low-delay", "-o", self.path("a.rlpc"))
+        self.fails(64, "needs --profile high", "rlpcenc", MESH, "--low-delay", "-o",
+                   self.path("a.rlpc"))
         self.fails(64, "--box needs --low-delay", "rlpcenc", MESH, "--box", "0,0,0,1,1,1", "-o",
                    self.path("a.rlpc"))
 

@@ -19,7 +19,7 @@ class Messages(ToolsTest):
         trace = self.ok("rlpcinfo", stream, "--trace").out.decode()
         for limits, words in (
                 (["--max-memory", "50KiB"], r"needs at least \d+ KiB of memory, more than the "
-                                           r"limit \(--max-memory, 50 KiB\)"),
+                 r"limit \(--max-memory, 50 KiB\)"),
                 (["--max-vertices", 500], r"num_vertices_minus1: more vertices than the limit "
                                           r"\(--max-vertices 500\)"),
                 (["--max-frames", 59], r"num_frames_minus1: more frames than the limit "
@@ -86,8 +86,8 @@ class Messages(ToolsTest):
     def test_points_are_advised_for_meshes_only(self):
         triangles, frames = self.clip(1)
         said = self.ok("rlpcenc", self.path("clip.obj"), "--dry-run", "--kg", 1).err
-        self.assertIn(f"clip.obj: is a single frame; did you mean --points {self.path('clip.pc2')}?",
-                      said)
+        self.assertIn("clip.obj: is a single frame; did you mean --points "
+                      f"{self.path('clip.pc2')}?", said)
         self.ok("rlpcenc", self.path("clip.obj"), "-o", self.path("a.rlpc"), "--kg", 1)
         self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("clip.glb"))
         self.assertNotIn("--points",
@@ -109,8 +109,8 @@ class Messages(ToolsTest):
         for options in (["--kg", 1e-5], ["--max-error", 1e-7], ["--bpvf", 0.05],
                         ["--kg", 0.01, "--components", 2, "--bones", 1]):
             said = self.fails(2, "out of reach", "rlpcenc", *clip, *options).err
-            found = re.search(r"Try (?:more --components, or )?(--\S+) (\S+?)(?:, or a longer --gof)?"
-                              r"\.\n", said)
+            found = re.search(r"Try (?:more --components, or )?(--\S+) (\S+?)"
+                              r"(?:, or a longer --gof)?\.\n", said)
             self.assertIsNotNone(found, said)
             self.assertEqual(found.group(1), options[0])
             self.ok("rlpcenc", *clip, *found.groups(), *options[2:])
@@ -129,8 +129,9 @@ class Messages(ToolsTest):
         shutil.copy(Tools.folder / "rlpcdec", self.path("bin"))
         done = subprocess.run([self.path("bin") / "rlpcdec", stream, "--html", self.path("a.html")],
                               capture_output=True, text=True, check=False)
-        self.assertEqual(done.stderr, "rlpcdec: player not built: run scripts/player first, or pass "
-                                      "--player PAGE\n")
+        self.assertEqual(done.stderr,
+                         "rlpcdec: player not built: run scripts/player first, or pass "
+                         "--player PAGE\n")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import math
 import random
 import statistics
 
-from tools_testing import ToolsTest, main, read_obj, read_pc2, write_obj, write_pc2
+from tools_testing import ToolsTest, main, read_pc2, write_obj, write_pc2
 
 DT, WEIGHT = 0.0003, 9.144e-5  # STED
 BEFORE, AFTER = 5, 4  # steps of its window
@@ -29,7 +29,8 @@ def deviation(values):
 
 
 def edges_of(triangles):
-    return {frozenset(pair) for t in triangles for pair in ((t[0], t[1]), (t[1], t[2]), (t[2], t[0]))
+    return {frozenset(pair) for t in triangles
+            for pair in ((t[0], t[1]), (t[1], t[2]), (t[2], t[0]))
             if pair[0] != pair[1]}
 
 

@@ -76,8 +76,8 @@ class Comparison:
     def rms(self, errors):
         """errors: {number: degrees}, of the numbers that count."""
         weights = {n: sum(frame[n][1] for frame in self.frames) for n in self.numbers}
-        return (sum(weights[n] * errors[n] ** 2 for n in self.numbers) /
-                sum(weights.values())) ** 0.5
+        return (sum(weights[n] * errors[n] ** 2 for n in self.numbers)
+                / sum(weights.values())) ** 0.5
 
     def smallest(self):
         return self.rms(self.oracle.errors(self.numbers))

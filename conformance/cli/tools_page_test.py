@@ -114,8 +114,8 @@ class Pages(PageTest):
     def test_large_animations_show_some_frames(self):
         frames = read_pc2(INPUTS / "elephant.pc2")
         write_pc2(self.path("long.pc2"), (frames * 45)[:2600])  # 18 MB in 13 bytes a vertex
-        long = [INPUTS / "elephant.obj", "--points-a", self.path("long.pc2"), INPUTS / "elephant.obj",
-                "--points-b", self.path("long.pc2")]
+        long = [INPUTS / "elephant.obj", "--points-a", self.path("long.pc2"),
+                INPUTS / "elephant.obj", "--points-b", self.path("long.pc2")]
         self.ok("rlpccmp", *long, "--html", self.path("a.html"), "-q")
         page = self.path("a.html").read_text()
         self.has("Shows one of every 2 frames", page)
@@ -130,14 +130,16 @@ class Pages(PageTest):
         for tool, arguments, code in (("rlpccmp", compare, 2),
                                       ("rlpcinfo", compare[1:2], 4)):
             for place in ("none/a.html", "."):
-                self.fails(code, str(self.path(place)), tool, *arguments, "--html", self.path(place))
+                self.fails(code, str(self.path(place)), tool, *arguments, "--html",
+                           self.path(place))
             self.path("old.html").write_text("old")
             self.fails(code, "old.html", tool, *arguments, "--html", self.path("old.html"),
                        **limited(4096))
             self.assertEqual(self.path("old.html").read_text(), "old")
         self.path("bad.rlpc").write_bytes(self.path("a.rlpc").read_bytes()[:-20])
         self.fails(1, "", "rlpcinfo", self.path("bad.rlpc"), "--html", self.path("bad.html"))
-        self.fails(64, "", "rlpcinfo", self.path("a.rlpc"), "--trace", "--html", self.path("b.html"))
+        self.fails(64, "", "rlpcinfo", self.path("a.rlpc"), "--trace", "--html",
+                   self.path("b.html"))
         self.assertEqual(self.files(), ["a.rlpc", "bad.rlpc", "old.html"])
 
 

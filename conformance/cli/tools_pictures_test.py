@@ -14,8 +14,8 @@ import subprocess
 from tools_cut_test import CutTest
 from tools_testing import INPUTS, ROOT, Tools, limited, main, read_rlpd
 
-import specdec  # noqa: E402  (tools_cut_test knows the folder)
-from specdec_testing import PROGRAM  # noqa: E402
+import specdec  # tools_cut_test knows the folder
+from specdec_testing import PROGRAM
 
 # One of each kind of GOF, with and without a vertex order, triangles, slices.
 STREAMS = ("v1.0/accept/CON/CON-0001a", "v1.0/accept/VOR/VOR-0001a", "v1.0/accept/MIX/MIX-0101a",

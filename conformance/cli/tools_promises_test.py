@@ -69,7 +69,8 @@ class Promises(ToolsTest):
                 {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
             "bufferViews": [{"buffer": 0, "byteLength": len(data)},
                             {"buffer": 0, "byteOffset": len(data), "byteLength": 12}],
-            "buffers": [{"byteLength": len(data) + 12, "uri": "data:application/octet-stream;base64,"
+            "buffers": [{"byteLength": len(data) + 12,
+                         "uri": "data:application/octet-stream;base64,"
                          + base64.b64encode(data + indices).decode()}]}
         self.path("a.gltf").write_text(json.dumps(document))
         return self.path("a.gltf")

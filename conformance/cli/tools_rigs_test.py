@@ -31,8 +31,8 @@ class Rigs(ToolsTest):
         mesh, points = self.path("long.obj"), self.path("long.pc2")
         mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         frames = [[0, 0, f % 7, 1, 0, f % 5, 0, 1, f % 3] for f in range(300)]
-        points.write_bytes(b"POINTCACHE2\0" + struct.pack("<iiffi", 1, 3, 0, 1, len(frames)) +
-                           b"".join(struct.pack("<9f", *frame) for frame in frames))
+        points.write_bytes(b"POINTCACHE2\0" + struct.pack("<iiffi", 1, 3, 0, 1, len(frames))
+                           + b"".join(struct.pack("<9f", *frame) for frame in frames))
         for profile, num_gofs in (("main", 3), ("high", 2)):
             stream = self.path(profile + ".rlpc")
             self.ok("rlpcenc", mesh, "--points", points, "--preset", "fast", "--profile",

@@ -66,7 +66,7 @@ class Sequences(ToolsTest):
         self.assertEqual(self.positions(folder / "f_%d.obj"), [0, 1, 2, 3])
         (folder / "f_0.5.obj").write_text(mesh(9))
         self.assertIn("1 file is left out", self.ok("rlpcenc", folder / "f_%d.obj", "-o",
-                                                   self.path("a.rlpc"), "--quiet").err)
+                                                    self.path("a.rlpc"), "--quiet").err)
         self.put(["g_0000.obj", "g_0001.obj"])
         self.assertEqual(self.positions(folder / "g_####.obj"), [0, 1])
         self.fails(1, "write %04d", "rlpcenc", folder / "g_%4d.obj", "-o", self.path("a.rlpc"))

@@ -10,7 +10,7 @@ import math
 import shutil
 
 from tools_testing import (INPUTS, NAMES, ROOT, ToolsTest, main, read_obj, read_pc2, read_rlpd,
-                           run, triangle_set, write_obj, write_pc2)
+                           triangle_set, write_obj, write_pc2)
 
 
 class RoundTrip(ToolsTest):
@@ -169,7 +169,8 @@ class RoundTrip(ToolsTest):
         }
         for mode, (of_all, of_some) in expected.items():
             self.encode(self.path("a.rlpc"), "--kg", 0.5, "--gof", 20, "--hash", mode)
-            for options, (compared, agree, words) in (((), of_all), (("--frames", "5-24"), of_some)):
+            for options, (compared, agree, words) in (((), of_all),
+                                                      (("--frames", "5-24"), of_some)):
                 found = verified(*options)
                 self.assertEqual(found[:2], (compared, agree), mode)
                 self.assertIn(words, found[2], mode)
@@ -258,8 +259,8 @@ class Figures(ToolsTest):
         for part in ("bones", "rest positions", "spatial factors"):
             self.assertGreater(info["bits"][part], 0, part)
         said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
-        for words in ("Main profile", "skinned GOFs: 3, with ", "frames 20 to 39", "influences, rest positions",
-                      f" {info['gofs'][0]['slices'][0]['bytes']} "):
+        for words in ("Main profile", "skinned GOFs: 3, with ", "frames 20 to 39",
+                      "influences, rest positions", f" {info['gofs'][0]['slices'][0]['bytes']} "):
             self.assertIn(words, said)
         self.assertNotIn("frames 20 to 39", self.ok("rlpcinfo", stream).out.decode())
         self.encode(stream, "--kg", 5, "--profile", "baseline")
@@ -289,8 +290,8 @@ class Figures(ToolsTest):
     def test_cloth_of_high_rank_gets_clusters(self):
         stream, sizes = self.path("a.rlpc"), []
         for options, part in (((), "clusters"), (("--prediction", "layers"), "bones")):
-            self.ok("rlpcenc", INPUTS / "curtain.obj", "--points", INPUTS / "curtain.pc2", "-o", stream,
-                    "--kg", 0.05, *options)
+            self.ok("rlpcenc", INPUTS / "curtain.obj", "--points", INPUTS / "curtain.pc2", "-o",
+                    stream, "--kg", 0.05, *options)
             self.ok("rlpcdec", stream, "--verify")
             self.assertIn(f"num_{part}", self.ok("rlpcinfo", stream, "--json").json()["gofs"][0])
             sizes.append(stream.stat().st_size)
@@ -315,7 +316,8 @@ class Figures(ToolsTest):
         surface = self.ok("rlpccmp", INPUTS / "elephant.obj", self.path("a.rlpc"),
                           "--json").json()["surface"]
         column = {name: [float(row[i]) for row in rows] for i, name in enumerate(head)}
-        for name, steps, weight in (("sted", 59, surface["sted_c"]), ("ring_edge_difference", 58, 1)):
+        for name, steps, weight in (("sted", 59, surface["sted_c"]),
+                                    ("ring_edge_difference", 58, 1)):
             spatial = sum(column[f"{name}_spatial"]) / 60
             temporal = sum(column[f"{name}_temporal"]) / steps
             self.assertGreater(min(spatial, temporal), 0)
@@ -440,9 +442,9 @@ class Targets(ToolsTest):
         elephant = ("rlpcenc", INPUTS / "elephant.obj", "--points", INPUTS / "elephant.pc2", "-o",
                     self.path("a.rlpc"), "--preset", "fast", "--json")
         for options, visible, warned in ((("--kg", 1), True, True), (("--bpvf", 1), True, True),
-                                       (("--quality", "preview"), True, False),
-                                       (("--kg", 1, "-q"), True, False),
-                                       (("--quality", "good"), False, False)):
+                                         (("--quality", "preview"), True, False),
+                                         (("--kg", 1, "-q"), True, False),
+                                         (("--quality", "good"), False, False)):
             result = self.ok(*elephant, *options)
             self.assertEqual("the error may be visible" in result.err, warned, options)
             found = result.json()["visibility"]

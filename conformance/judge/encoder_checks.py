@@ -153,8 +153,8 @@ class Checker:
             self._fail(judgement, "mesh", f"cannot read the file of {{order}}: {error}")
             return None
         if sorted(order) != list(range(count)):
-            self._fail(judgement, "mesh", "the file of {order} is not a permutation of the "
-            "vertices")
+            self._fail(judgement, "mesh",
+                       "the file of {order} is not a permutation of the vertices")
             return None
         return order
 

@@ -10,7 +10,7 @@ import sys
 import rlpd
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "specdec"))
-import specdec  # noqa: E402
+import specdec
 
 
 def expectation_of(data, program):

@@ -132,7 +132,8 @@ class Grader:
             cells["full"] = self._float_cell(stream, judgement, state)
         else:
             cells["strict"] = state
-            cells["diagnostic"] = self._rule_cell(stream, judgement, run) if state == PASS else state
+            cells["diagnostic"] = (self._rule_cell(stream, judgement, run) if state == PASS
+                                   else state)
         judgement.cells = cells
         if stream.attributes is not None:
             cells["attributes"] = self._attributes_cell(stream, judgement, state)

@@ -16,9 +16,9 @@ import unittest
 import zlib
 
 sys.dont_write_bytecode = True
-import expectation  # noqa: E402
-import suite  # noqa: E402
-from specdec_testing import PROGRAM, cut_animation, stream_of, units_of  # noqa: E402
+import expectation
+import suite
+from specdec_testing import PROGRAM, cut_animation, stream_of, units_of
 
 JUDGE = pathlib.Path(__file__).resolve().parent
 ROOT = JUDGE.parents[1]

@@ -119,8 +119,8 @@ def load_suites(folders):
         loaded.append(load_suite(folder))
         for stream in loaded[-1].streams:
             if stream.id in places:
-                raise SuiteError(f"{stream.id} is in {places[stream.id]} and in {folder}; name each "
-                                 "suite once")
+                raise SuiteError(f"{stream.id} is in {places[stream.id]} and in {folder}; name "
+                                 "each suite once")
             places[stream.id] = folder
     return loaded
 

@@ -11,8 +11,8 @@ import sys
 
 _CONFORMANCE = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(_CONFORMANCE / "judge"))
-import contract  # noqa: E402
-import grading  # noqa: E402
+import contract
+import grading
 
 LIST = pathlib.Path(__file__).resolve().with_name("mutants.txt")
 FOLDERS = ("common", "decoder", "scripts/cmake")

@@ -158,12 +158,12 @@ PAGES = [
          "Functions of clause 5 at each of their calls, and shifts and divisions of numbers that "
          "can be negative. A tie of Round2 and DivRound is `exact`: nothing is left after half a "
          "unit was added."),
-    Page("loops.md", "Loops and binarisation", lambda f, s: _is_loop(f, s) and not (
-        _is_coder(f, s) or _is_arithmetic(f, s)),
+    Page("loops.md", "Loops and binarisation", lambda f, s:
+         _is_loop(f, s) and not (_is_coder(f, s) or _is_arithmetic(f, s)),
          "Numbers of iterations; for a loop that counts up to a constant, every number.", _loops),
-    Page("branches.md", "Branches", lambda f, s: not (
-        s.kind in ("element", "context") or _is_loop(f, s) or _is_coder(f, s)
-        or _is_arithmetic(f, s)),
+    Page("branches.md", "Branches", lambda f, s:
+         not (s.kind in ("element", "context") or _is_loop(f, s) or _is_coder(f, s)
+              or _is_arithmetic(f, s)),
          "Every condition both ways, and the nearest values on both sides of every limit "
          "(true-edge, false-edge)."),
 ]

@@ -14,8 +14,8 @@ sys.dont_write_bytecode = True
 TOOLS = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(TOOLS), str(TOOLS.parent / "specdec")]
 
-import coverage_report  # noqa: E402
-import rlpccov_test  # noqa: E402
+import coverage_report
+import rlpccov_test
 
 
 class Commands(rlpccov_test.FolderTest):

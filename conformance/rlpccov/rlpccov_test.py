@@ -15,14 +15,14 @@ sys.dont_write_bytecode = True
 TOOLS = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(TOOLS), str(TOOLS.parent / "specdec")]
 
-import coverage_measure  # noqa: E402
-import coverage_program  # noqa: E402
-import coverage_report  # noqa: E402
-import coverage_signs  # noqa: E402
-import coverage_waivers  # noqa: E402
-import spec_program  # noqa: E402
-import specdec  # noqa: E402
-from specdec_testing import (  # noqa: E402
+import coverage_measure
+import coverage_program
+import coverage_report
+import coverage_signs
+import coverage_waivers
+import spec_program
+import specdec
+from specdec_testing import (
     cut_animation, encode, run_stream, soup_animation)
 
 BIN = None

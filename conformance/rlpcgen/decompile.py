@@ -14,12 +14,11 @@ _NOT_ZERO = set(recipe_source.DEFAULTS) | {
     "first_frame", "num_gof_frames_minus1", "num_index_gofs_minus1", "first_gof_offset",
     "index_gof_frames_minus1", "index_gof_bytes", "num_index_rigs", "index_rig_idx",
     "index_rig_distance", "index_distance", "component_group_idx", "layer_group_idx",
-    "frame_idx",    "bone_pivot", "extra_bone"}
+    "frame_idx", "bone_pivot", "extra_bone"}
 _GATE_FLAGS = {"boundary_flag": "B", "close_flag": "C", "new_vertex_flag": "A",
                "glue_previous_flag": "P", "glue_next_flag": "N"}
 _INFERRED = ("ancillary_flag", "unit_type", "unit_size", "unit_crc", "position_crc", "frame_crc",
-             "version_major",
-             "version_minor")
+             "version_major", "version_minor")
 _COMPONENT = ("trajectory_flag", "scale_idx_delta", "spatial_bits_delta", "temporal_bits_delta",
               "temporal_predictor", "spatial_predictor", "temporal_residual", "spatial_residual",
               "temporal_weight", "temporal_between", "trajectory_residual")

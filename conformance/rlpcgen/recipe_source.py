@@ -20,8 +20,8 @@ _ABSOLUTE = {"scale_idx": ("scale_idx_delta", "ScaleIdx"),
              "num_components": ("num_components_delta", None),
              "vertex_order": ("vertex_order_delta", None)}
 _PSEUDO = set(_ABSOLUTE) | {"cluster", "gates", "mesh", "triangles", "json", "deflated", "payload",
-                            "attribute_name", "payload_cut", "payload_append", "payload_replaced", "section_end",
-                            "alignment", "stop"}
+                            "attribute_name", "payload_cut", "payload_append", "payload_replaced",
+                            "section_end", "alignment", "stop"}
 # The elements with which a component begins, unless that one comes directly before.
 _FIRST_OF_COMPONENT = {"trajectory_flag": None, "scale_idx_delta": "trajectory_flag",
                        "spatial_bits_delta": "scale_idx_delta"}
@@ -178,7 +178,6 @@ class RecipeSource:
             self._before["cluster"] = self._given("cluster", ())
             return int(self._before["cluster"] == ns["PredictedCluster"])
         return self._before["cluster"]
-
 
     def _attribute_name(self, ns, element):
         """Size or next byte of the name of a set: of `attribute_name`, or "0", "1", ..."""
@@ -409,4 +408,3 @@ def _infer_positions(writer, codes, offsets, code):
         indexed = offsets and offsets[-1][0] == codes["GOF_INDEX"]
         writer.inferred["index_distance"] = here - offsets[-1][1] if indexed else 0
         writer.inferred["num_sequence_frames"] = writer.ns.get("NumParsedFrames", 0)
-

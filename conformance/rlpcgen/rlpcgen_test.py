@@ -14,18 +14,18 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "judge"))
-import decompile  # noqa: E402
-import expectation  # noqa: E402
-import mesh_gates  # noqa: E402
-import random_high  # noqa: E402
-import recipe as recipes  # noqa: E402
-import recipe_source  # noqa: E402
-import specdec  # noqa: E402
-import spec_program  # noqa: E402
-import stream_writer  # noqa: E402
-import stress  # noqa: E402
-import suite  # noqa: E402
-import suite_streams  # noqa: E402
+import decompile
+import expectation
+import mesh_gates
+import random_high
+import recipe as recipes
+import recipe_source
+import specdec
+import spec_program
+import stream_writer
+import stress
+import suite
+import suite_streams
 
 HERE = pathlib.Path(__file__).resolve().parent
 SPEC = HERE.parents[1] / "spec"
@@ -152,7 +152,8 @@ class Recipes(unittest.TestCase):
         self.refuses("GOFS is not a unit", self.changed("unit GOF\n", "unit GOFS\n"))
         self.refuses("does not fit u(3)",
                      self.changed("lcf_flag = 1", "lcf_flag = 1\n  seed_predictor = 9"))
-        self.refuses("not possible on this gate", self.changed("mesh = tetrahedron", "gates = T P C"))
+        self.refuses("not possible on this gate",
+                     self.changed("mesh = tetrahedron", "gates = T P C"))
         self.refuses("no operation is left", self.changed("mesh = tetrahedron", "gates = T A"))
         self.refuses("not understood", "what is this\n")
 

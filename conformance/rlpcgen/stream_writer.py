@@ -14,7 +14,7 @@ import sys
 import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "specdec"))
-import spec_program  # noqa: E402
+import spec_program
 
 BIT_DESCRIPTORS = ("u", "ue", "se")
 MAX_RESIDUAL = 268435455

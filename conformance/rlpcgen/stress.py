@@ -1,9 +1,9 @@
 """The stress tier: streams of which only the digests are kept.
 
 STRESS.json of a version has a digest for each hundred random legal streams, by seed, and for each
-recipe of recipes-stress/: more of the same kind as the core tier, or slow, or large. A digest covers
-the bytes of the streams and all that they decode to. write_suite() writes the streams themselves
-into a folder, as a suite.
+recipe of recipes-stress/: more of the same kind as the core tier, or slow, or large. A digest
+covers the bytes of the streams and all that they decode to. write_suite() writes the streams
+themselves into a folder, as a suite.
 """
 
 import hashlib
@@ -20,9 +20,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "judge"))
 import expectation
 import random_high
 import recipe as recipes
-import recipe_source
 import spec_program
-import suite  # noqa: E402
+import suite
 import suite_streams
 
 INDEX = suite_streams.STRESS
@@ -98,7 +97,6 @@ class _Worker:
             if checked.returncode not in _VALIDATOR_CODES[found["expect"]]:
                 return decoded, f"rlpcval: {checked.stdout[-300:]}{checked.stderr[-300:]}"
         return decoded, None
-
 
     def _decode_attributes(self, stream, expected):
         """(SHA-256 of OUT.rlpa, rule or "none"; complaint or None)"""

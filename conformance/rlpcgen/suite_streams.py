@@ -10,11 +10,11 @@ import sys
 
 _CONFORMANCE = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(_CONFORMANCE / "judge"))
-import expectation  # noqa: E402
-import recipe as recipes  # noqa: E402
-import recipe_source  # noqa: E402
-import spec_program  # noqa: E402  (found through recipe_source)
-import suite  # noqa: E402
+import expectation
+import recipe as recipes
+import recipe_source
+import spec_program  # found through recipe_source
+import suite
 
 LICENCE = "CC0-1.0"
 SUMS = "SHA256SUMS"
@@ -197,8 +197,8 @@ def strays(folder, places):
 
 
 def sums(folder):
-    """The text of SHA256SUMS: what a release freezes. Sidecars, which may get more fields later, are
-    in SHA256SUMS.sidecars."""
+    """The text of SHA256SUMS: what a release freezes. Sidecars, which may get more fields later,
+    are in SHA256SUMS.sidecars."""
     folder = pathlib.Path(folder)
     paths = sorted(folder.glob("*/*/*.rlpc")) + sorted(folder.glob("recipes*/*/*.recipe"))
     paths += [folder / name for name in (suite.INDEX, STRESS) if (folder / name).is_file()]

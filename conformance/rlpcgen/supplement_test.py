@@ -15,9 +15,9 @@ import unittest
 sys.dont_write_bytecode = True
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "specdec"))
-import spec_program  # noqa: E402
-import specdec  # noqa: E402
-import zlib_faults  # noqa: E402
+import spec_program
+import specdec
+import zlib_faults
 
 SPEC = HERE.parents[1] / "spec"
 PROGRAM = spec_program.Program(SPEC)

@@ -11,14 +11,14 @@ import random
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from tools_testing import ROOT, ToolsTest, main, run  # noqa: E402
+from tools_testing import ROOT, ToolsTest, main, run
 
 for folder in ("judge", "specdec", "rlpcgen"):
     sys.path.insert(0, str(ROOT / "conformance" / folder))
-import random_high  # noqa: E402
-import spec_program  # noqa: E402
-import specdec  # noqa: E402
-from specdec_testing import stream_of, units_of  # noqa: E402
+import random_high
+import spec_program
+import specdec
+from specdec_testing import stream_of, units_of
 
 SLICE = 6
 RIG = 7

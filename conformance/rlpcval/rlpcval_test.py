@@ -11,13 +11,13 @@ import sys
 import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from tools_testing import ROOT, ToolsTest, main, run, write_obj, write_pc2  # noqa: E402
+from tools_testing import ROOT, ToolsTest, main, run, write_obj, write_pc2
 
 for folder in ("judge", "specdec"):
     sys.path.insert(0, str(ROOT / "conformance" / folder))
-import schema  # noqa: E402
-import spec_program  # noqa: E402
-import specdec  # noqa: E402
+import schema
+import spec_program
+import specdec
 
 
 class Validation(ToolsTest):

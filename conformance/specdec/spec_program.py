@@ -39,6 +39,7 @@ def blocks(folder):
     for path in sorted(pathlib.Path(folder).glob("*.md")):
         clause = ""
         fence = None
+        first, lines = 0, []
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
             if line.startswith("```"):
                 if fence == "rlpc":

@@ -29,8 +29,8 @@ import traceback
 import zlib
 
 sys.dont_write_bytecode = True
-import program_cache  # noqa: E402
-import spec_program  # noqa: E402
+import program_cache
+import spec_program
 
 DONE, INVALID, UNSUPPORTED, LIMIT, IO, USAGE, SPEC_ERROR = 0, 1, 2, 3, 4, 64, 70
 SPEC = pathlib.Path(__file__).resolve().parents[2] / "spec"

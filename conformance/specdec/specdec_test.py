@@ -17,9 +17,9 @@ import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import spec_program  # noqa: E402
-import specdec  # noqa: E402
-from specdec_testing import PROGRAM, ROOT, FolderTest, run_stream  # noqa: E402
+import spec_program
+import specdec
+from specdec_testing import PROGRAM, ROOT, FolderTest, run_stream
 
 
 class Language(FolderTest):

@@ -13,8 +13,8 @@ import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import spec_program  # noqa: E402
-import specdec  # noqa: E402
+import spec_program
+import specdec
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = spec_program.Program(ROOT / "spec")

@@ -17,9 +17,9 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import spec_program  # noqa: E402
-import specdec  # noqa: E402
-from specdec_testing import (CRC_BYTES, PROGRAM, ROOT, UNIT_HEADER_BYTES,  # noqa: E402
+import spec_program
+import specdec
+from specdec_testing import (CRC_BYTES, PROGRAM, ROOT, UNIT_HEADER_BYTES,
                              coarse_mesh, stream_of, units_of)
 
 END_OF_SEQUENCE, SLICE, GOF_INDEX, GOF_HASH = 5, 6, 129, 130
@@ -71,8 +71,9 @@ class Statements(unittest.TestCase):
     def test_which_functions_call_themselves(self):
         calls = self.calls()
         found = {name for name in calls if name in self.reached(calls, calls[name])}
-        stated = re.search(r"A function can call itself\. Only (\w+)\( \) \([\d.]+\) and (\w+)\( \)",
-                           prose("04-conventions.md"))
+        stated = re.search(
+            r"A function can call itself\. Only (\w+)\( \) \([\d.]+\) and (\w+)\( \)",
+            prose("04-conventions.md"))
         self.assertEqual(found, set(stated.groups()))
         v = PROGRAM.compile({"StreamBytes": b""})
         for name, clean in {"AddParallelogram": {"Parallelograms": [[]] * 9},

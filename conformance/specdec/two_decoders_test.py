@@ -17,8 +17,8 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import spec_program  # noqa: E402
-from specdec_testing import (  # noqa: E402
+import spec_program
+from specdec_testing import (
     ROOT, FolderTest, cut_animation, encode, run_attributes, run_stream, soup_animation, stream_of,
     units_of)
 

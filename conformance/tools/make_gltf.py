@@ -79,8 +79,8 @@ def packed(document, data):
     """A .glb file; `data` has a multiple of 4 bytes."""
     text = json.dumps(document, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
-    chunks = (struct.pack("<I4s", len(text), b"JSON") + text +
-              struct.pack("<I4s", len(data), b"BIN\0") + data)
+    chunks = (struct.pack("<I4s", len(text), b"JSON") + text
+              + struct.pack("<I4s", len(data), b"BIN\0") + data)
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 

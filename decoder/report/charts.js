@@ -74,7 +74,7 @@ for (const figure of document.querySelectorAll("figure[data-chart]")) {
   });
   svg.addEventListener("click", (event) => {
     const at = found(event);
-    if (at) document.dispatchEvent(new CustomEvent("go-to-frame", {detail: at[1]}));
+    if (at) document.dispatchEvent(new CustomEvent("go-to-frame", { detail: at[1] }));
   });
   document.addEventListener("frame-shown", (event) => {
     put(now, chart.bars ? event.detail + 0.5 : event.detail);

@@ -22,8 +22,8 @@ class MeshView {
 
   // ---- Drawing ----
 
-  /** Returns coordinates relative to the centre of all frames: far from the origin, 32 bits would not
-   * resolve them. */
+  /** Returns coordinates relative to the centre of all frames: far from the origin, 32 bits would
+   * not resolve them. */
   coordinatesOf(which, frame) {
     const { vertices, step } = this.info;
     const levels = this.levels[which].subarray(3 * vertices * frame, 3 * vertices * (frame + 1));

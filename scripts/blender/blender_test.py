@@ -58,8 +58,8 @@ def blender(folder, scene, scripts, *arguments):
 
 def distance(left, right):
     """The largest distance of a vertex, in any frame."""
-    return max(math.dist(a, b) for l, r in zip(left, right, strict=True)
-               for a, b in zip(l, r, strict=True))
+    return max(math.dist(a, b) for ours, theirs in zip(left, right, strict=True)
+               for a, b in zip(ours, theirs, strict=True))
 
 
 @unittest.skipUnless(shutil.which("blender"), "no Blender: scripts/setup --blender installs it")

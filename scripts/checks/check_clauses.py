@@ -8,14 +8,15 @@ Parsers      each parse_*( ) of the headers of decoder/codec/parse/ cites its cl
 Rules        every rule id in C++ code or pseudo-code, like R-HDR-03, is defined once in spec/,
              as {R-HDR-03}.
 Elements     every syntax element of the `rlpc` blocks (name = u(1), name = ue(), name = ae(...))
-             is a string literal in exactly one file of decoder/codec/parse/ (or the reader of units),
-             or read in exactly one other file of decoder/, and no file reads other elements. An
-             element that several functions of the specification read may be in as many files.
-             Blocks of the clause of the parsing process describe bins, not elements.
+             is a string literal in exactly one file of decoder/codec/parse/ (or the reader of
+             units), or read in exactly one other file of decoder/, and no file reads other
+             elements. An element that several functions of the specification read may be in as many
+             files. Blocks of the clause of the parsing process describe bins, not elements.
 """
 
 import collections
 import dataclasses
+import itertools
 import re
 import sys
 
@@ -202,7 +203,7 @@ def uncited(root, spec):
         if cpp_source.is_test(path):
             continue
         lines = cpp_source.read(path).splitlines()
-        opening = " ".join(lines[:next((i for i, l in enumerate(lines) if not l.startswith("//")), 0)])
+        opening = " ".join(itertools.takewhile(lambda line: line.startswith("//"), lines))
         for index, line in enumerate(lines):
             match = _PARSER.match(line)
             if not match:
@@ -212,8 +213,8 @@ def uncited(root, spec):
                 above -= 1
             cited = re.findall(_DOTTED, opening + " " + " ".join(lines[above:index]))
             if not any(number in spec.clauses for number in cited):
-                yield (f"{path.relative_to(root)}:{index + 1}: {match.group(1)}( ) cites no clause, "
-                       "nor does its file")
+                yield (f"{path.relative_to(root)}:{index + 1}: {match.group(1)}( ) cites no "
+                       "clause, nor does its file")
 
 
 def check(root):

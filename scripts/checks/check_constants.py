@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Every constant of the encoder's search is marked as tuned or fixed.
 
-In the sources of the search (scripts/studies/tuning/tuned.py), each constant that is declared with a
-number has a comment `tuned: REASON` or `fixed: REASON` behind or above it. No other number has a
-fraction, except in plain formulas (halves, bits of a byte, per cent). Tuned constants have different
-names, and encoder/codec/kinds/skinned/search/README.md has a row for each, and for no other.
+In the sources of the search (scripts/studies/tuning/tuned.py), each constant that is declared with
+a number has a comment `tuned: REASON` or `fixed: REASON` behind or above it. No other number has a
+fraction, except in plain formulas (halves, bits of a byte, per cent). Tuned constants have
+different names, and encoder/codec/kinds/skinned/search/README.md has a row for each, and for no
+other.
 """
 
 import re
@@ -13,8 +14,8 @@ import sys
 import cpp_source
 
 sys.path.insert(0, str(cpp_source.repository_root() / "scripts" / "studies" / "tuning"))
-import tuned  # noqa: E402
-import worth  # noqa: E402
+import tuned
+import worth
 
 PAGE = "encoder/codec/kinds/skinned/search/README.md"
 # Halves and doubles, coordinates, bits of a byte (or eighths of an octave), the variance of a

@@ -9,7 +9,6 @@ that assign to it, to an element of it, or append to it, and with the clauses th
 """
 
 import ast
-import collections
 import pathlib
 import re
 import sys
@@ -18,7 +17,7 @@ import check_clauses
 import cpp_source
 
 sys.path.append(str(cpp_source.repository_root() / "conformance" / "specdec"))
-import spec_program  # noqa: E402
+import spec_program
 
 ANNEX = pathlib.Path("spec", "annex-d-index.md")
 _SEMANTICS = ("7.", "F.3")  # F.3: those of attributes

@@ -118,8 +118,9 @@ def try_examples(folder, clip, work):
     shown = run(folder / "memory", clip.stream, stdout=subprocess.PIPE, text=True).stdout
     require(shown.endswith("; 0 bytes left\n"), f"memory prints {shown}")
     shown = run(folder / "skin", clip.stream, stdout=subprocess.PIPE, text=True).stdout
-    require(re.match(r"a quarter after frame 0: .*\nframe 0: \d+ bones, skinning is off by up to \S+\n",
-                     shown), f"skin prints {shown}")
+    require(re.match(r"a quarter after frame 0: .*\n"
+                     r"frame 0: \d+ bones, skinning is off by up to \S+\n", shown),
+            f"skin prints {shown}")
     out = work / "frame.bin"
     run(folder / "vertices", clip.stream, out, stdout=subprocess.DEVNULL)
     vertices = int(clip.shape[0])

@@ -41,8 +41,8 @@ def check(root):
             continue
         for match in calls_of(cpp_source.code_only(text)):
             line = cpp_source.line_of(text, match.start())
-            complaints.append(f"{name}:{line}: {match.group().strip()}: only {FOLDER}/json.h parses "
-                              "and prints JSON (read_json, json_text)")
+            complaints.append(f"{name}:{line}: {match.group().strip()}: only {FOLDER}/json.h "
+                              "parses and prints JSON (read_json, json_text)")
     if num_files == 0:
         complaints.append("no source uses JSON")
     return complaints, f"{num_files} files with JSON leave parsing and printing to {FOLDER}/"

@@ -65,7 +65,8 @@ def check_library(layer, relative, included):
     first = included.split("/")[0]
     if first in LAYERS:
         return f'<{included}> is ours: write "{included}"'
-    if first in rooms.LIBRARIES[layer] or (cpp_source.is_test(relative) and first in rooms.TEST_LIBRARIES):
+    if first in rooms.LIBRARIES[layer] or (cpp_source.is_test(relative)
+                                           and first in rooms.TEST_LIBRARIES):
         return None
     if "/" in included or first in set().union(rooms.TEST_LIBRARIES, *rooms.LIBRARIES.values()):
         return f"{layer}/ must not use <{included}>"

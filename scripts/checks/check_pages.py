@@ -16,7 +16,8 @@ _NAME = re.compile(rf"(?<![\w/.%-])((?:{'|'.join(_FOLDERS)})/[\w./*-]*)")
 _FUNCTION = re.compile(r"`(?:\w+::)*(\w+)\(\)`")
 _LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 
-# Page: tables in it that a script writes between `<!-- begin: NAME ... -->` and `<!-- end: NAME -->`.
+# Page: tables in it that a script writes, between `<!-- begin: NAME ... -->` and
+# `<!-- end: NAME -->`.
 _WRITTEN = {"README.md": ("rates",)}
 
 

@@ -13,10 +13,10 @@ from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import check_rate  # noqa: E402
+import check_rate
 
 # The file `sizes`: SIZE NAME SETTING; 1000 for others. Below zero: the target was missed.
-ENCODER = """#!/bin/sh
+ENCODER = r"""#!/bin/sh
 name=$(basename "${1%.*}")
 if [ "$2" = --points ]; then [ "$3" = "${1%.obj}.pc2" ] || exit 1; shift 2; fi
 out=$3

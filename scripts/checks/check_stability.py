@@ -4,10 +4,11 @@
 * Every file listed in streams/vX.Y/SHA256SUMS has the digest in that file, and spec/versions.md
   marks exactly the versions and supplements with such a file as released. SHA256SUMS.sidecars lists
   the digests of all sidecars, which contain the expected output.
-* The encoder writes the same bytes for streams/inputs as before: streams/inputs/encoder_digests.json
-  lists the digests by version of the project (CMakeLists.txt). They may change with the version, or
-  with an erratum (spec/errata.md) that the new entry names. While CHANGELOG.md marks a version as
-  unreleased, its entry may be replaced: each change of the encoder's bytes is made on purpose.
+* The encoder writes the same bytes for streams/inputs as before:
+  streams/inputs/encoder_digests.json lists the digests by version of the project (CMakeLists.txt).
+  They may change with the version, or with an erratum (spec/errata.md) that the new entry names.
+  While CHANGELOG.md marks a version as unreleased, its entry may be replaced: each change of the
+  encoder's bytes is made on purpose.
 
   --bin FOLDER   folder of rlpcenc; without it, the encoder is not run
   --write        add an entry for the current encoder, or replace that of an unreleased version
@@ -170,7 +171,8 @@ def main():
     options = parser.parse_args()
     if options.write:
         write(options.root, options.bin.resolve(), options.erratum)
-    complaints = list(released(options.root)) + list(entries(options.root, committed_entries(options.root)))
+    complaints = [*released(options.root),
+                  *entries(options.root, committed_entries(options.root))]
     if options.bin is not None:
         complaints += encoder(options.root, options.bin.resolve())
     for complaint in complaints:

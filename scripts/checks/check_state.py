@@ -74,7 +74,8 @@ def updated(root):
         return f"| {match.group(1)} | {places} | {', '.join(names)} |"
 
     text, count = _ELEMENTS.subn(
-        lambda marks: marks.group(1) + _ELEMENTS_ROW.sub(row, marks.group(2)) + marks.group(3), text)
+        lambda marks: marks.group(1) + _ELEMENTS_ROW.sub(row, marks.group(2)) + marks.group(3),
+        text)
     if count != 1:
         complaints.append("no marks `begin: elements`, `end: elements`, once each")
     table = _ELEMENTS.search(text)
@@ -119,7 +120,8 @@ def check(root):
     if text != fresh:
         complaints.append("Table E-2 is not up to date: scripts/index")
     return ([f"{ANNEX}: {c}" for c in complaints + more],
-            f"{ANNEX} lists {len(listed)} variables, and the syntax elements that outlive a function")
+            f"{ANNEX} lists {len(listed)} variables, and the syntax elements that outlive a "
+            "function")
 
 
 def write(root):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The scripts answer --help on one screen, with what they do and an example or the options; and they
-refuse wrong usage with exit code 64."""
+"""The scripts answer --help on one screen, with what they do and an example or the options; and
+they refuse wrong usage with exit code 64."""
 
 import os
 import pathlib
@@ -34,7 +34,6 @@ class Help(unittest.TestCase):
             self.assertLessEqual(len(lines), most_lines, script)
             for line in lines:
                 self.assertLessEqual(len(line), most_columns, (script, line))
-
 
     def test_wrong_usage_is_refused(self):
         for script, *arguments in (("scripts/mutate", "--jobs", "0"),

@@ -9,14 +9,14 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import check_clauses  # noqa: E402
-import check_headers_first  # noqa: E402
-import check_labels  # noqa: E402
-import check_pages  # noqa: E402
-import check_rules  # noqa: E402
-import check_stability  # noqa: E402
-import check_types  # noqa: E402
-import cpp_source  # noqa: E402
+import check_clauses
+import check_headers_first
+import check_labels
+import check_pages
+import check_rules
+import check_stability
+import check_types
+import cpp_source
 
 
 class TreeTest(unittest.TestCase):
@@ -64,8 +64,8 @@ class Pages(TreeTest):
             check_pages.check, {**self.THERE, "README.md": text + marks}, *expected)
 
     def test_what_is_there(self):
-        self.run_on("`scripts/make_it --all`, spec/a.md. [a](spec/a.md#b) build/spec/c, scripts/make*,"
-                    " streams/vX.Y, [far](https://a.b)\n")
+        self.run_on("`scripts/make_it --all`, spec/a.md. [a](spec/a.md#b) build/spec/c, "
+                    "scripts/make*, streams/vX.Y, [far](https://a.b)\n")
 
     def test_what_is_not(self):
         self.run_on("\nsee `spec/b.md`\n", "README.md:2", "spec/b.md")
@@ -122,7 +122,8 @@ class Types(TreeTest):
         self.assert_clean(check_types.check, good)
         for again in ("struct B {\n};\n", "class C final : public B {};\n",
                       "enum class A : int {};\n"):
-            self.assert_one(check_types.check, {**good, "common/b.h": again}, "is defined in", "too")
+            self.assert_one(check_types.check, {**good, "common/b.h": again}, "is defined in",
+                            "too")
 
     def test_a_tree_without_any_is_not_the_project(self):
         self.assert_one(check_types.check, {"common/a.h": "int a();\n"}, "no header")
@@ -160,7 +161,8 @@ class Labels(unittest.TestCase):
 
 class Clauses(TreeTest):
     def run_on(self, code, *expected, spec=SPEC, parser=PARSER):
-        tree = {"spec/06-syntax.md": spec, "common/a.h": code, "decoder/codec/parse/parse_a.cpp": parser,
+        tree = {"spec/06-syntax.md": spec, "common/a.h": code,
+                "decoder/codec/parse/parse_a.cpp": parser,
                 "decoder/codec/units/unit_reader.cpp": ""}
         (self.assert_one if expected else self.assert_clean)(check_clauses.check, tree, *expected)
 
@@ -213,7 +215,8 @@ class Clauses(TreeTest):
 
     def test_element_with_two_parsers(self):
         found = self.complaints(check_clauses.check, {
-            "spec/06-syntax.md": SPEC, "decoder/codec/parse/parse_a.cpp": PARSER, "decoder/codec/units/unit_reader.cpp": "",
+            "spec/06-syntax.md": SPEC, "decoder/codec/parse/parse_a.cpp": PARSER,
+            "decoder/codec/units/unit_reader.cpp": "",
             "decoder/codec/parse/parse_b.h": 'r.flag("lcf_flag");\n',
             "decoder/codec/parse/parse_b_test.cpp": 'expect("lcf_flag");\n'})
         self.assertEqual(len(found), 1, found)
@@ -226,7 +229,8 @@ class Clauses(TreeTest):
 
 class Rules(TreeTest):
     TEXT = ("# 7 Semantics\n**x** is short. It is a requirement of bitstream\n"
-            "conformance that x is 1. {R-ABC-01} A stream is unsupported unless y is 2. {R-ABC-02}\n")
+            "conformance that x is 1. {R-ABC-01} A stream is unsupported unless y is 2. "
+            "{R-ABC-02}\n")
 
     def tree(self, text, listed=None):
         sentences = [("R-ABC-01", "invalid",
@@ -269,7 +273,8 @@ class Rules(TreeTest):
     def test_rule_without_check_in_the_validator(self):
         tools = "conformance/rlpcval/"
         tree = {**self.tree(self.TEXT), "decoder/codec/parse/parse_a.cpp": 'fail("R-ABC-01");\n',
-                tools + "validator.cpp": '#include "decoder/codec/parse/parse_a.h"\n// "R-ABC-02"\n'}
+                tools + "validator.cpp":
+                '#include "decoder/codec/parse/parse_a.h"\n// "R-ABC-02"\n'}
         self.assert_one(check_rules.check, tree, "R-ABC-02 has no check in rlpcval")
         self.assert_clean(check_rules.check, {**tree, tools + "validator_b.cpp": '"R-ABC-02"\n'})
 

@@ -13,15 +13,15 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import check_clauses  # noqa: E402
-import check_constants  # noqa: E402
-import check_float  # noqa: E402
-import check_headers_first  # noqa: E402
-import check_json  # noqa: E402
-import check_layers  # noqa: E402
-import check_rules  # noqa: E402
-import cpp_source  # noqa: E402
-import rooms  # noqa: E402
+import check_clauses
+import check_constants
+import check_float
+import check_headers_first
+import check_json
+import check_layers
+import check_rules
+import cpp_source
+import rooms
 
 ROOT = cpp_source.repository_root()
 COPIED = (*cpp_source.LAYERS, "spec")
@@ -74,7 +74,8 @@ class RealTree(unittest.TestCase):
         """Adds an include to an existing file."""
         self.assertTrue((self.root / name).is_file(), name)
         places = () if "in a circle" in expected[0] else (name,)
-        self.complaint(check_layers.check, name, lambda text: text + line + "\n", *places, *expected)
+        self.complaint(check_layers.check, name, lambda text: text + line + "\n", *places,
+                       *expected)
 
     @contextlib.contextmanager
     def without(self, folder):
@@ -92,8 +93,10 @@ class Layers(RealTree):
         self.assertEqual(check_layers.check(self.root)[0], [])
 
     def test_sides_never_include_each_other(self):
-        self.include("decoder/rlpc_decoder.cpp", '#include "encoder/rlpc_encoder.h"', "must not include")
-        self.include("encoder/codec/sequence/choices/gof_cuts.cpp", '#include "decoder/rlpc_decoder.h"',
+        self.include("decoder/rlpc_decoder.cpp", '#include "encoder/rlpc_encoder.h"',
+                     "must not include")
+        self.include("encoder/codec/sequence/choices/gof_cuts.cpp",
+                     '#include "decoder/rlpc_decoder.h"',
                      "must not include")
         self.include("common/codec/mesh/topology.cpp", '#include "decoder/codec/slice_cut.h"',
                      "must not include")
@@ -101,12 +104,14 @@ class Layers(RealTree):
                      '#include "conformance/testing/count_memory.h"', "must not include")
 
     def test_parsing_includes_nothing_that_reconstructs(self):
-        for header in ("common/codec/kinds/skinned/recon/skinned_recon.h", "common/codec/kernels/kernels.h",
-                       "common/codec/kinds/cluster/recon/lcf.h", "decoder/codec/gofs/gof_recon.h",
+        for header in ("common/codec/kinds/skinned/recon/skinned_recon.h",
+                       "common/codec/kernels/kernels.h", "common/codec/kinds/cluster/recon/lcf.h",
+                       "decoder/codec/gofs/gof_recon.h",
                        "common/codec/mesh_prediction/geometry_weights.h",
                        "common/codec/mesh/vertex_layers.h", "decoder/codec/units/unit_reader.h"):
             with self.subTest(header=header):
-                self.include("decoder/codec/parse/parse_skinned_gof.cpp", f'#include "{header}"', header)
+                self.include("decoder/codec/parse/parse_skinned_gof.cpp", f'#include "{header}"',
+                             header)
 
     def test_parsing_calls_nothing_that_reconstructs(self):
         for call in ("make_layers(n, triangles);", "make_recon(unit, context);",
@@ -117,22 +122,24 @@ class Layers(RealTree):
                                "decoder/codec/parse/access_unit_parser.cpp", "must not call")
 
     def test_files_of_meshes_know_nothing_of_coding(self):
-        self.include("encoder/meshes/obj/obj_reader.cpp", '#include "encoder/codec/spans/span_coder.h"',
+        self.include("encoder/meshes/obj/obj_reader.cpp",
+                     '#include "encoder/codec/spans/span_coder.h"',
                      "must not include")
         self.include("decoder/meshes/mesh_sink.cpp", '#include "decoder/rlpc_decoder.h"',
                      "must not include")
 
     def test_only_one_folder_of_common_works_with_files(self):
         header = '#include "common/files/output_file.h"'
-        for name in ("common/codec/mesh/topology.cpp", "common/codec/kinds/skinned/recon/skinned_recon.h",
-                     "decoder/codec/parse/parse_gof_header.cpp", "decoder/codec/gofs/hash_check.cpp",
-                     "decoder/codec/units/stream_reader.cpp"):
+        for name in ("common/codec/mesh/topology.cpp",
+                     "common/codec/kinds/skinned/recon/skinned_recon.h",
+                     "decoder/codec/parse/parse_gof_header.cpp",
+                     "decoder/codec/gofs/hash_check.cpp", "decoder/codec/units/stream_reader.cpp"):
             with self.subTest(name=name):
                 self.include(name, header, "must not include")
         self.include("common/files/output_file.h", '#include "decoder/codec/slice_cut.h"',
                      "must not include")
-        for name in ("decoder/codec/parse/access_unit_parser.cpp", "decoder/codec/gofs/hash_check.cpp",
-                     "decoder/codec/units/stream_reader.cpp"):
+        for name in ("decoder/codec/parse/access_unit_parser.cpp",
+                     "decoder/codec/gofs/hash_check.cpp", "decoder/codec/units/stream_reader.cpp"):
             with self.subTest(name=name):
                 self.complaint(check_layers.check, name, lambda text: text + (
                     "void f() { float_position(grid, 0, 1); }\n"), name, "must not call")
@@ -170,7 +177,8 @@ class Layers(RealTree):
 
     def test_no_folders_include_each_other(self):
         before = rooms.ROOMS
-        rooms.ROOMS = {**before, "common/codec/bits": before["common/codec/bits"] | {"common/codec/mesh"}}
+        rooms.ROOMS = {**before,
+                       "common/codec/bits": before["common/codec/bits"] | {"common/codec/mesh"}}
         try:
             self.include("common/codec/bits/bit_reader.cpp", '#include "common/codec/mesh/mesh.h"',
                          "in a circle: common/codec/mesh -> common/codec/bits -> common/codec/mesh")
@@ -182,13 +190,13 @@ class Layers(RealTree):
                            ("decoder/codec/units/unit_reader.cpp", "void f() try {} ALL"),
                            ("decoder/codec/gofs/prefetch.cpp", "catch (...) {}")):
             with self.subTest(name=name):
-                self.complaint(check_layers.check, name, lambda t, l=line: l + "\n" + t,
+                self.complaint(check_layers.check, name, lambda t, line=line: line + "\n" + t,
                                f"{name}:1", "must neither throw nor catch")
         for name, line in (("common/codec/mesh/topology.cpp", "// throw"),
                            ("common/codec/mesh/topology_test.cpp", "void f() { throw 1; }"),
                            ("decoder/c_api/rlpc_c_decoder.cpp", "void f() { throw 1; }"),
                            ("encoder/c_api/rlpc_c_encoder.cpp", "void f() { throw 1; }")):
-            with self.subTest(name=name), self.planted(name, lambda t, l=line: l + "\n" + t):
+            with self.subTest(name=name), self.planted(name, lambda t, line=line: line + "\n" + t):
                 self.assertEqual(check_layers.check(self.root)[0], [])
 
     def test_folders_are_rooms_and_rooms_are_folders(self):
@@ -225,13 +233,16 @@ class Json(RealTree):
         for name, line in (
                 ("encoder/meshes/texels.cpp", "auto a = nlohmann::json::parse(text);"),
                 ("encoder/meshes/texels.cpp", "auto a = Json::parse(text, nullptr, false);"),
-                ("encoder/programs/rlpcenc/encode_options.cpp", "bool a = nlohmann::ordered_json::accept(t);"),
+                ("encoder/programs/rlpcenc/encode_options.cpp",
+                 "bool a = nlohmann::ordered_json::accept(t);"),
                 ("decoder/meshes/stream_asset.cpp", "auto a = GltfJson::parse(text);"),
                 ("decoder/meshes/stream_asset.cpp", "bool a = GltfJson::sax_parse(text, &sax);"),
                 ("decoder/programs/rlpcdec/rlpcdec.cpp", "auto a = remarks.dump(2);"),
-                ("decoder/programs/rlpcinfo/rlpcinfo_report.cpp", "std::cout << std::setw(2) << json << 1;"),
+                ("decoder/programs/rlpcinfo/rlpcinfo_report.cpp",
+                 "std::cout << std::setw(2) << json << 1;"),
                 ("conformance/rlpcval/rlpcval.cpp", "std::cin >> json;"),
-                ("conformance/rlpccmp/rlpccmp.cpp", "using Tree = nlohmann::json; Tree::parse(t);")):
+                ("conformance/rlpccmp/rlpccmp.cpp",
+                 "using Tree = nlohmann::json; Tree::parse(t);")):
             with self.subTest(name=name, line=line):
                 self.assertTrue((self.root / name).is_file(), name)
                 self.complaint(check_json.check, name, lambda text, line=line: line + "\n" + text,
@@ -249,9 +260,9 @@ class Float(RealTree):
 
     def test_every_folder_of_integers_is_checked(self):
         for name in ("common/codec/mesh_prediction/value_prediction.cpp",
-                     "common/codec/kinds/skinned/recon/skinned_recon.h", "common/codec/bits/int_math.h",
-                     "decoder/codec/parse/section_reader.h", "decoder/codec/gofs/hash_check.cpp",
-                     "decoder/codec/units/stream_reader.cpp",
+                     "common/codec/kinds/skinned/recon/skinned_recon.h",
+                     "common/codec/bits/int_math.h", "decoder/codec/parse/section_reader.h",
+                     "decoder/codec/gofs/hash_check.cpp", "decoder/codec/units/stream_reader.cpp",
                      "decoder/codec/extract/sub_stream_extractor.cpp"):
             with self.subTest(name=name):
                 self.plant(name, "double x;")
@@ -268,7 +279,7 @@ class Float(RealTree):
                            ("common/codec/mesh/topology_test.cpp", "double x;"),
                            ("common/files/output_file.cpp", "double x;"),
                            ("decoder/meshes/mesh_sink.cpp", "float y;")):
-            with self.subTest(name=name), self.planted(name, lambda t, l=line: l + "\n" + t):
+            with self.subTest(name=name), self.planted(name, lambda t, line=line: line + "\n" + t):
                 self.assertEqual(check_float.check(self.root)[0], [])
 
     def test_an_empty_folder_is_reported(self):
@@ -284,7 +295,8 @@ class HeadersFirst(RealTree):
     def test_another_include_before_it(self):
         self.complaint(check_headers_first.check, "encoder/codec/write/write_stream.cpp",
                        lambda text: "#include <vector>\n" + text,
-                       "encoder/codec/write/write_stream.cpp", '"encoder/codec/write/write_stream.h"')
+                       "encoder/codec/write/write_stream.cpp",
+                       '"encoder/codec/write/write_stream.h"')
 
 
 class Constants(RealTree):
@@ -292,7 +304,8 @@ class Constants(RealTree):
 
     def plant(self, line, *expected, name=SOURCE):
         self.assertTrue((self.root / name).is_file(), name)
-        self.complaint(check_constants.check, name, lambda text: text + line + "\n", name, *expected)
+        self.complaint(check_constants.check, name, lambda text: text + line + "\n", name,
+                       *expected)
 
     def test_the_tree_is_clean(self):
         self.assertEqual(check_constants.check(self.root)[0], [])
@@ -307,7 +320,8 @@ class Constants(RealTree):
                 self.plant(line, "kMagic says neither")
 
     def test_every_folder_of_the_search_is_checked(self):
-        for name in ("encoder/codec/spans/component_cost.h", "encoder/codec/sequence/target/target_search.cpp",
+        for name in ("encoder/codec/spans/component_cost.h",
+                     "encoder/codec/sequence/target/target_search.cpp",
                      "encoder/codec/kinds/cluster/cluster_gof_search.cpp",
                      "encoder/codec/kinds/skinned/skinned_span_coder.cpp",
                      "encoder/codec/kinds/skinned/fit/bone_solver.cpp",
@@ -325,7 +339,7 @@ class Constants(RealTree):
                      "constexpr double kUnit = 0.37;  // fixed: format",
                      "// 0.37 is no number of the code"):
             with self.subTest(line=line), self.planted(self.SOURCE,
-                                                       lambda t, l=line: t + l + "\n"):
+                                                       lambda t, line=line: t + line + "\n"):
                 self.assertEqual(check_constants.check(self.root)[0], [])
 
     def test_the_page_has_a_row_for_each_and_no_other(self):
@@ -337,10 +351,10 @@ class Constants(RealTree):
                        "bone_search.kGone is no tuned constant")
 
     def test_an_encoder_without_tags_is_told(self):
-        with self.without("encoder/codec/kinds/skinned"), self.without("encoder/codec/kinds/cluster"), \
-                self.without("encoder/codec/kinds/inter"), self.without("encoder/codec/spans"), \
-                self.without("encoder/codec/partition"), self.without("encoder/codec/rest"), \
-                self.without("encoder/codec/sequence"), self.without("encoder/codec/attributes"):
+        with contextlib.ExitStack() as missing:
+            for folder in ("kinds/skinned", "kinds/cluster", "kinds/inter", "spans", "partition",
+                           "rest", "sequence", "attributes"):
+                missing.enter_context(self.without(f"encoder/codec/{folder}"))
             found = check_constants.check(self.root)[0]
         self.assertIn("no tuned constant is found: the check sees nothing", found)
 

@@ -8,16 +8,17 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import check_index  # noqa: E402
-import check_state  # noqa: E402
-from test_checks import TreeTest  # noqa: E402
+import check_index
+import check_state
+from test_checks import TreeTest
 
 
 class Index(TreeTest):
     TREE = {"spec/06.md": "# 6 Syntax\n## 6.1 Head\n```rlpc\ndef head():\n    Sizes = []\n"
                           "    for i in range(2):\n        size_flag = u(1)\n"
                           "        Sizes.append(size_flag)\n    Forget()\n```\n",
-            "spec/07.md": "# 7 Semantics\n## 7.1 Head\nHere.\n### 7.1.2 Size\n**size_flag** is one.\n",
+            "spec/07.md": "# 7 Semantics\n## 7.1 Head\nHere.\n### 7.1.2 Size\n"
+                          "**size_flag** is one.\n",
             "spec/08.md": "# 8 Decoding\n## 8.2 End\n```rlpc\ndef Forget():\n    a = 1\n"
                           "    Sizes[0] = a\n    size_flag = 0\n    Last = a + Sizes[1]\n```\n"}
     TABLES = {"functions": "| function | clause |\n|---|---|\n"
@@ -61,7 +62,8 @@ class State(TreeTest):
 
     def tree(self, variables=VARIABLES, elements=ELEMENTS, spec=SPEC):
         return {"spec/06.md": spec, str(check_state.ANNEX):
-                f"{variables}\n<!-- begin: elements (x) -->\n| a | b | c |\n|---|---|---|\n{elements}<!-- end: elements -->\n"}
+                f"{variables}\n<!-- begin: elements (x) -->\n| a | b | c |\n|---|---|---|\n"
+                f"{elements}<!-- end: elements -->\n"}
 
     def test_all_that_outlives_its_function_is_listed(self):
         self.assert_clean(check_state.check, self.tree())
@@ -70,10 +72,11 @@ class State(TreeTest):
                         "head( ) reads wide_flag, far_flag, and has no row")
 
     def test_variables_that_are_wrong(self):
-        for more, complaint in {"| a unit | head( ) (6.1) | Lost |\n": "gives Lost no value",
-                                "| a unit | head( ) (6.1) | far_flag |\n": "does not outlive a function",
-                                "| a unit | Use( ) (6.2) | Sizes |\n": "Use( ) gives Sizes no",
-                                "| a unit | Use( ) (6.1) | Sizes |\n": "6.1 has no Use( )"}.items():
+        for place, complaint in {"head( ) (6.1) | Lost": "gives Lost no value",
+                                 "head( ) (6.1) | far_flag": "does not outlive a function",
+                                 "Use( ) (6.2) | Sizes": "Use( ) gives Sizes no",
+                                 "Use( ) (6.1) | Sizes": "6.1 has no Use( )"}.items():
+            more = f"| a unit | {place} |\n"
             found = self.complaints(check_state.check, self.tree(self.VARIABLES + more))
             self.assertIn(complaint, " ".join(found))
 

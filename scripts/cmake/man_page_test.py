@@ -10,7 +10,7 @@ import sys
 import unittest
 
 sys.dont_write_bytecode = True
-import man_page  # noqa: E402
+import man_page
 
 HELP = """Does a thing.
 Usage: rlpcdec STREAM [OPTIONS]

@@ -227,8 +227,8 @@ def cluster_gof_seeds(found, _):
             header, connectivity = first[SEQUENCE_HEADER], first[CONNECTIVITY]
             frame = Bits(payload[:16]).ue()
             if max(frame, len(header), len(connectivity)) < 65536:
-                yield (struct.pack("<IHH", frame, len(header), len(connectivity)) +
-                       header + connectivity + payload)
+                yield (struct.pack("<IHH", frame, len(header), len(connectivity))
+                       + header + connectivity + payload)
 
 
 def is_main(header):

@@ -54,8 +54,8 @@ def cut_animations(pairs, frames, folder):
         samples, = struct.unpack_from("<i", data, 28)
         kept = min(samples, frames or samples)
         cut = folder / f"{len(meshes)}-{cache.stem}.pc2"
-        cut.write_bytes(data[:28] + struct.pack("<i", kept) +
-                        data[PC2_HEADER_BYTES:PC2_HEADER_BYTES + 12 * points * kept])
+        cut.write_bytes(data[:28] + struct.pack("<i", kept)
+                        + data[PC2_HEADER_BYTES:PC2_HEADER_BYTES + 12 * points * kept])
         meshes.append(cut.with_suffix(".obj"))
         shutil.copy(mesh, meshes[-1])
     return meshes

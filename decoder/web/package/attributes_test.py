@@ -18,8 +18,8 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "player"))
-import textured_box  # noqa: E402
-from player_testing import (PACKAGE, STREAMS, InFolder, main, need_node,  # noqa: E402
+import textured_box
+from player_testing import (PACKAGE, STREAMS, InFolder, main, need_node,
                             need_player, run)
 
 DOMAINS = ("vertex", "corner", "triangle")
@@ -193,7 +193,8 @@ class Attributes(InFolder):
                 self.assertLess(self.furthest(some, others), 1e-6)
             before = self.normals_of_ply(f"{name}-%d.ply", 0, told["drawn"])
             self.assertGreater(self.furthest(ours, before), 0.1)  # another frame has others
-            cos, sin = ((f(last * textured_box.TURN) if turns else f(0)) for f in (math.cos, math.sin))
+            cos, sin = ((f(last * textured_box.TURN) if turns else f(0))
+                        for f in (math.cos, math.sin))
             source = [(cos * x - sin * y, sin * x + cos * y, z)
                       for (x, y, z), _, _ in textured_box.FACES]
             self.assertLess(self.furthest(ours, source), 0.01 if turns else 0.15)

@@ -14,9 +14,9 @@ import shutil
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "testing"))
-from in_scene import InScene  # noqa: E402
-from player_testing import ELEPHANT, STREAMS, float_frames, main, run  # noqa: E402
-from stream_server import StreamServer  # noqa: E402
+from in_scene import InScene
+from player_testing import ELEPHANT, STREAMS, float_frames, main, run
+from stream_server import StreamServer
 
 HEAD, TAIL = 16384, 4096  # what open() loads first
 LIES = 40  # servers of the test with wrong replies
@@ -148,7 +148,7 @@ class Decoder(InScene):
         self.assertEqual(self.run_script("""
             const decoder = await RlpcDecoder.open('long.rlpc');
             return sha256((await decoder.frame(30)).positions);"""),
-            hashlib.sha256(frames[30]).hexdigest())
+                         hashlib.sha256(frames[30]).hexdigest())
         self.assertLessEqual(len(self.server.requests), 6)
 
     def test_a_server_without_ranges(self):
@@ -271,11 +271,11 @@ class Decoder(InScene):
         points = [line.split()[1:3] for line in lines if line.startswith("v ")]
         source = self.folder / "textured.obj"
         source.write_text("\n".join(
-            [line for line in lines if line.startswith("v ")] +
-            [f"vt {x} {y}" for x, y in points] +
-            ["f " + " ".join(f"{corner.split('/')[0]}/{corner.split('/')[0]}"
-                             for corner in line.split()[1:])
-             for line in lines if line.startswith("f ")]))
+            [line for line in lines if line.startswith("v ")]
+            + [f"vt {x} {y}" for x, y in points]
+            + ["f " + " ".join(f"{corner.split('/')[0]}/{corner.split('/')[0]}"
+                               for corner in line.split()[1:])
+               for line in lines if line.startswith("f ")]))
         stream = self.folder / name
         done = run("rlpcenc", "-q", source, "--points", f"{ELEPHANT}.pc2", "--preset", "fast",
                    "-o", stream, *arguments)

@@ -11,9 +11,9 @@ import shutil
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "testing"))
-from in_scene import InScene  # noqa: E402
-import textured_box  # noqa: E402
-from player_testing import STREAMS, main  # noqa: E402
+from in_scene import InScene
+import textured_box
+from player_testing import STREAMS, main
 
 
 COLOURS = {(True, False, False): "red", (False, True, False): "green",
@@ -248,7 +248,7 @@ class Loader(InScene):
             gltfLoader.register((parser) => ({ name: "COUNTS", beforeRoot: () => void ++parsed }));
             await show('box.rlpc', { gltfLoader });
             return [first, numbers, parsed, "uv" in one.geometry.attributes];"""),
-            [[255, 0, 0, 255], [0, 1], 1, True])
+                         [[255, 0, 0, 255], [0, 1], 1, True])
 
     def test_without_gltf_loader_it_says_what_to_do(self):
         page = (self.folder / "scene.html").read_text()
@@ -363,13 +363,15 @@ class Loader(InScene):
     def test_errors_and_progress(self):
         result = self.run_script("""
             const steps = [];
-            const mesh = await new RLPCLoader().loadAsync('walk.rlpc', (event) => steps.push(event));
+            const mesh = await new RLPCLoader().loadAsync('walk.rlpc',
+              (event) => steps.push(event));
             const error = await new RLPCLoader().loadAsync('none.rlpc').catch((error) => error);
             const failed = [];
             const bytes = new Uint8Array(await (await fetch('walk.rlpc')).arrayBuffer());
             bytes[bytes.length / 2 | 0] ^= 16;
             const damaged = await new RLPCLoader().open(bytes);
-            damaged.addEventListener('error', ({ error, index }) => failed.push([index, error.rule]));
+            damaged.addEventListener('error',
+              ({ error, index }) => failed.push([index, error.rule]));
             damaged.play();
             for (let i = 0; i < 400 && damaged.frame < 50; ++i) {
               damaged.update(1 / 30);
@@ -454,7 +456,8 @@ class Loader(InScene):
                 (index) => frame(Math.min(index, 59))));
               clone.geometry.attributes.position.array.forEach((x, k) => {
                 const part = place - Math.floor(place);
-                off = Math.max(off, Math.abs(x - (1 - part) * a.positions[k] - part * b.positions[k]));
+                const mixed = (1 - part) * a.positions[k] + part * b.positions[k];
+                off = Math.max(off, Math.abs(x - mixed));
               });
             }
             return { decoded, off };""")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Time in clips, in node: RLPCMesh beside three.js with the .glb of rlpcdec and with the source, and
-beside the library in C.
+"""Time in clips, in node: RLPCMesh beside three.js with the .glb of rlpcdec and with the source,
+and beside the library in C.
 
   loops_test.py --bin FOLDER [Loops|Clocks]...
 
@@ -19,7 +19,7 @@ import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "player"))
-from player_testing import (MODULES, PACKAGE, STREAMS, InFolder, main, need_node,  # noqa: E402
+from player_testing import (MODULES, PACKAGE, STREAMS, InFolder, main, need_node,
                             need_player, run)
 
 TULIP = STREAMS / "inputs" / "tulip.glb"  # Sway is a loop; Visit ends elsewhere, and begins late
@@ -40,8 +40,9 @@ class InNode(InFolder):
 
     def in_node(self, script, *arguments):
         """What a script of testing/ writes."""
-        done = subprocess.run(["node", HERE / "testing" / script, MODULES, self.package, *arguments],
-                              capture_output=True, timeout=300, check=False)
+        done = subprocess.run(
+            ["node", HERE / "testing" / script, MODULES, self.package, *arguments],
+            capture_output=True, timeout=300, check=False)
         self.assertEqual(done.returncode, 0, done.stderr.decode())
         return json.loads(done.stdout)
 
@@ -49,7 +50,8 @@ class InNode(InFolder):
 class Loops(InNode):
     def test_they_take_the_same_time_everywhere(self):
         stream, decoded = self.folder / "a.rlpc", self.folder / "a.glb"
-        done = run("rlpcenc", TULIP, "--animation", "all", "--preset", "fast", "--kg", 1, "-o", stream)
+        done = run("rlpcenc", TULIP, "--animation", "all", "--preset", "fast", "--kg", 1, "-o",
+                   stream)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(run("rlpcdec", stream, "-o", decoded).returncode, 0)
         told = self.in_node("loops.mjs", stream, TULIP, decoded)
@@ -78,7 +80,7 @@ class Clocks(InNode):
     """The same frames, with the same weights, at the same times."""
 
     def cases(self, dice, rate):
-        """Times at frames, in the middle between them, at ends, before and long after them, and any."""
+        """Times at frames, midway between them, at ends, before and long after them, and any."""
         for clip in range(-1, len(CLIPS)):
             last = (SEQUENCE if clip < 0 else CLIPS[clip][1]) - 1
             for kind in ("frame", "middle", "end", "before", "far", "any", "any", "any"):
@@ -86,8 +88,8 @@ class Clocks(InNode):
                              "end": last, "before": -dice.random() - 0.01,
                              "far": dice.uniform(50, 1e6),
                              "any": dice.uniform(0, 1.5 * last)}[kind]
-                yield {"clip": clip, "seconds": float(intervals / rate), "repeats": dice.random() < 0.5,
-                       "speed": dice.choice(SPEEDS), "kind": kind}
+                yield {"clip": clip, "seconds": float(intervals / rate),
+                       "repeats": dice.random() < 0.5, "speed": dice.choice(SPEEDS), "kind": kind}
 
     def ways(self, case, duration):
         """Those that take this time: seeks end at the end, and do not turn; playing takes long."""
@@ -143,7 +145,8 @@ class Clocks(InNode):
             ours = self.in_node("clocks.mjs", stream, told)
             native = self.in_c(stream, cases)
             turned = self.in_c(stream, [
-                self.backwards(case, SEQUENCE if case["clip"] < 0 else CLIPS[case["clip"]][1], exact)
+                self.backwards(case, SEQUENCE if case["clip"] < 0 else CLIPS[case["clip"]][1],
+                               exact)
                 for case in cases])
             self.assertEqual({len(ours), len(native), len(turned)}, {len(cases)})
             for case, one, there, back in zip(cases, ours, native, turned):
@@ -152,12 +155,14 @@ class Clocks(InNode):
     def check_case(self, case, ways, native, rate):
         there, back = native
         first, frames = (0, SEQUENCE) if case["clip"] < 0 else CLIPS[case["clip"]]
-        wanted = first + place_in(frames, fractions.Fraction(case["seconds"]) * rate, case["repeats"])
+        wanted = first + place_in(frames, fractions.Fraction(case["seconds"]) * rate,
+                                  case["repeats"])
         off = abs(float(wanted - fractions.Fraction(there["place"])))
         if case["repeats"]:
             off = min(off, abs(frames - 1 - off))
         self.assertLess(off, 2e-6 + 1e-12 * abs(case["seconds"]), case)
-        self.assertEqual(there["frame"], min(math.floor(there["place"] + 0.5 + 1e-6), first + frames - 1))
+        self.assertEqual(there["frame"],
+                         min(math.floor(there["place"] + 0.5 + 1e-6), first + frames - 1))
         for way, result in ways.items():
             turns = way == "play" and case["speed"] < 0
             with self.subTest(way=way, case=case):

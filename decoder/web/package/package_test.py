@@ -18,8 +18,8 @@ import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "player"))
-import textured_box  # noqa: E402
-from player_testing import (MODULES, PACKAGE, ROOT, STREAMS, Decoded, InFolder,  # noqa: E402
+import textured_box
+from player_testing import (MODULES, PACKAGE, ROOT, STREAMS, Decoded, InFolder,
                             float_frames, main, need_node, need_player)
 
 EXIT_CODES = {"truncated": 1, "invalid": 1, "unsupported": 2, "limit": 3}
@@ -174,7 +174,8 @@ class Files(InFolder):
                 const mesh = await new RLPCLoader().setOptions({options}).loadAsync("tube.rlpc");
                 const whole = mesh.geometry.attributes;
                 const names = Object.keys(whole).sort();
-                const vertexOf = ({{ position }}, i) => position.array.slice(3 * i, 3 * i + 3).join();
+                const vertexOf =
+                  ({{ position }}, i) => position.array.slice(3 * i, 3 * i + 3).join();
                 const sizes = [mesh.geometry.index.count];
                 const clone = mesh.clone();
                 await mesh.seek(0);
@@ -226,7 +227,8 @@ class Modules(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout.decode())
 
     def test_the_version_is_that_of_the_project(self):
-        project = re.search(r"project\(rlpc VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())[1]
+        project = re.search(r"project\(rlpc VERSION (\S+)",
+                            (ROOT / "CMakeLists.txt").read_text())[1]
         self.assertEqual(json.loads((HERE / "package.json").read_text())["version"], project)
 
     def test_playback(self):

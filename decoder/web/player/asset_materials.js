@@ -10,7 +10,8 @@ function numbers(value, count, usual) {
   return fits ? value : usual;
 }
 
-/** Returns rows of a matrix from texture coordinates to those of the image (KHR_texture_transform). */
+/** Returns rows of a matrix from texture coordinates to those of the image (KHR_texture_transform).
+ * */
 function rowsOf({ offset, rotation, scale } = {}) {
   const [x, y] = numbers(offset, 2, [0, 0]);
   const [u, v] = numbers(scale, 2, [1, 1]);
@@ -42,8 +43,8 @@ async function pictureOf(blob) {
   }
 }
 
-/** Reads materials for Viewer.setMaterials(), and their problems: { materials, problems }. Throws if
- * the asset is not a GLB. */
+/** Reads materials for Viewer.setMaterials(), and their problems: { materials, problems }. Throws
+ * if the asset is not a GLB. */
 export async function readMaterials(bytes) {
   const glb = { json: glbJson(bytes), binary: glbChunks(bytes).binary };
   const { materials = [], textures = [], images = [], samplers = [] } = glb.json;

@@ -23,7 +23,8 @@ export function addControls(player) {
     "open-first": () => $("file").click(),
   };
   for (const [id, action] of Object.entries(actions)) $(id).onclick = action;
-  $("speed").append(...kSpeeds.map((speed) => new Option(`${speed}×`, speed, speed === 1, speed === 1)));
+  $("speed").append(...kSpeeds.map(
+    (speed) => new Option(`${speed}×`, speed, speed === 1, speed === 1)));
   $("speed").onchange = () => changeSpeed(0);
   $("clip").onchange = () => player.chooseClip(player.session.decoder.clips[$("clip").value]);
   $("slider").oninput = () => player.seek(Number($("slider").value));

@@ -1,8 +1,8 @@
 // Distances of vertices from the same vertices of another encoding of the animation.
 
-/** Computes distances between frames with integers on the grids of their decoders, in the cube from -1
- * to 1 that holds the grid of the first. vertices: if the frame has drawn vertices, their vertices of
- * the stream, each of which counts once in the root mean square. */
+/** Computes distances between frames with integers on the grids of their decoders, in the cube from
+ * -1 to 1 that holds the grid of the first. vertices: if the frame has drawn vertices, their
+ * vertices of the stream, each of which counts once in the root mean square. */
 export function vertexDistances(frame, decoder, reference, referenceDecoder, vertices) {
   const scale = 2 ** (1 - decoder.info.positionBits);
   const referenceScale = (scale / decoder.gridStep) * referenceDecoder.gridStep;

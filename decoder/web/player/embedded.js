@@ -1,6 +1,7 @@
 // Contents that rlpcdec and scripts/player put into the page.
 
-/** Takes the bytes of the base64 texts of elements, and removes these: a long stream is in parts. */
+/** Takes the bytes of the base64 texts of elements, and removes these: a long stream is in parts.
+ * */
 function takeBlob(selector) {
   const parts = [...document.querySelectorAll(selector)].map((element) => {
     const text = atob(element.textContent);

@@ -23,11 +23,14 @@ export function ofTime(ms) {
 }
 
 /** Returns [name, value] of a stream, from the info of its decoder. */
-export function streamFacts({ vertices, triangles, frames, frameRate, duration, bytes, profile, level }) {
+export function streamFacts({
+  vertices, triangles, frames, frameRate, duration, bytes, profile, level,
+}) {
   const rate = (8 * bytes) / (vertices * frames);
+  const perSecond = +frameRate.toFixed(2);
   return [
     ["Mesh", `${grouped(vertices)} vertices, ${grouped(triangles)} triangles`],
-    ["Frames", `${grouped(frames)} at ${+frameRate.toFixed(2)} per second, ${duration.toFixed(1)} s`],
+    ["Frames", `${grouped(frames)} at ${perSecond} per second, ${duration.toFixed(1)} s`],
     ["Size", `${ofSize(bytes)}, floats have ${ofSize(12 * vertices * frames)}`],
     ["Rate", `${digits(rate)} bits per vertex and frame`],
     ["Profile", `${profile}, level ${level}`],
@@ -48,8 +51,8 @@ function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** Shows the state. error: of the frame, or undefined; checkError: error that stopped the check of all
- * frames, or undefined. */
+/** Shows the state. error: of the frame, or undefined; checkError: error that stopped the check of
+ * all frames, or undefined. */
 export function showState(element, states, frame, { error, checkError }) {
   const state = states.states[frame];
   element.dataset.state = kStateNames[state];
@@ -63,8 +66,9 @@ export function showState(element, states, frame, { error, checkError }) {
     [State.differs, "do not fit their hash"],
     [State.error, "cannot be decoded"],
   ].map(([state, text]) => [states.counts[state], text]).filter(([number]) => number > 0);
+  const agree = grouped(states.counts[State.agrees]);
   setText(count, [
-    `${grouped(states.counts[State.agrees])} of ${grouped(states.states.length)} frames equal to their hash`,
+    `${agree} of ${grouped(states.states.length)} frames equal to their hash`,
     ...counts.map(([number, text]) => `${grouped(number)} ${text}`),
     ...(checkError ? [`Not all are checked: ${checkError}`] : []),
   ].join("\n"));

@@ -95,7 +95,8 @@ class Player {
     const coarse = await session.coarseFrame(index);
     if (!coarse || this.session !== session) return; // another stream has taken its place
     this.viewer.setMesh(coarse.info.vertices, coarse.indices);
-    this.viewer.showFrame({ ...coarse.frame, box: Object.values(session.boxOf(coarse.frame)).flat() });
+    const box = Object.values(session.boxOf(coarse.frame)).flat();
+    this.viewer.showFrame({ ...coarse.frame, box });
     this.coarseVertices = coarse.info.vertices;
     this.say("");
   }
@@ -178,9 +179,10 @@ class Player {
   /** Shows the numbers of a frame; on the time line, the requested frame. */
   showNumbers() {
     const { frame, first, count, frameRate } = this.playback;
-    const seconds = (frame - first) / frameRate;
+    const seconds = ((frame - first) / frameRate).toFixed(2);
     $("slider").value = frame;
-    $("clock").innerHTML = `${grouped(frame - first)} <small>/ ${grouped(count - 1)}</small> · ${seconds.toFixed(2)} s`;
+    $("clock").innerHTML =
+      `${grouped(frame - first)} <small>/ ${grouped(count - 1)}</small> · ${seconds} s`;
     this.states.draw(first, count);
     showState($("hash"), this.states, frame, {
       error: this.errors.get(frame), checkError: this.checkError,
@@ -222,7 +224,8 @@ class Player {
 
   /** Plays a clip in a loop; undefined: all frames. */
   chooseClip(clip) {
-    const { firstFrame: first, frames: count } = clip ?? { firstFrame: 0, frames: this.info.frames };
+    const { firstFrame: first, frames: count } =
+      clip ?? { firstFrame: 0, frames: this.info.frames };
     $("clip").value = clip ? this.session.decoder.clips.indexOf(clip) : "";
     this.playback.setRange(first, count);
     Object.assign($("slider"), { min: first, max: first + count - 1 });

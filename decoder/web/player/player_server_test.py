@@ -14,7 +14,7 @@ from in_browser import InBrowser
 from player_testing import PLAYER, Decoded, main
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "package" / "testing"))
-from stream_server import StreamServer  # noqa: E402
+from stream_server import StreamServer
 
 
 class Server(InBrowser):

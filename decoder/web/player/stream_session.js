@@ -46,8 +46,8 @@ export class StreamSession {
     }
   }
 
-  /** Decodes half of the vertex layers of a stream from a server, which arrive sooner. Returns the mesh
-   * and its frame; undefined without layers, or if they have an error. */
+  /** Decodes half of the vertex layers of a stream from a server, which arrive sooner. Returns the
+   * mesh and its frame; undefined without layers, or if they have an error. */
   async coarseFrame(index) {
     const { layers } = this.decoder.info;
     if (!this.isRemote || layers < 2) return undefined;
@@ -65,8 +65,8 @@ export class StreamSession {
     }
   }
 
-  /** Returns the mesh for the viewer: { numVertices, triangles, look, isFlat }, without a look if the
-   * stream has none; problems: parts that cannot be shown. */
+  /** Returns the mesh for the viewer: { numVertices, triangles, look, isFlat }, without a look if
+   * the stream has none; problems: parts that cannot be shown. */
   async mesh() {
     const { decoder } = this;
     const { vertices, hasAttributes, hasAsset, damagedUnits } = decoder.info;
@@ -154,8 +154,8 @@ export class StreamSession {
     if (this.isRemote) this.stream = await this.decoder.download();
   }
 
-  /** Decodes all frames in order with a separate decoder, so that playback continues. Returns false if
-   * it was stopped; throws the error that ended it. */
+  /** Decodes all frames in order with a separate decoder, so that playback continues. Returns false
+   * if it was stopped; throws the error that ended it. */
   async checkAll(receive) {
     const checker = await RlpcDecoder.open(this.stream, this.options);
     this.checker = checker;

@@ -21,13 +21,13 @@ CLAMP, REPEAT = 33071, 10497
 
 def png(rows):
     def chunk(kind, data):
-        return (struct.pack(">I", len(data)) + kind + data +
-                struct.pack(">I", zlib.crc32(kind + data)))
+        return (struct.pack(">I", len(data)) + kind + data
+                + struct.pack(">I", zlib.crc32(kind + data)))
 
     header = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 2, 0, 0, 0)
     pixels = b"".join(b"\0" + b"".join(map(bytes, row)) for row in rows)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) +
-            chunk(b"IDAT", zlib.compress(pixels)) + chunk(b"IEND", b""))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header)
+            + chunk(b"IDAT", zlib.compress(pixels)) + chunk(b"IEND", b""))
 
 
 class Buffer:
@@ -82,8 +82,8 @@ def box(colour=None, rows=ROWS, material=None, turns=False, uv_sets=1):
 
 
 def tube(rings, around):
-    """A tube whose texture, the same colour along it, goes around once, with a seam; its upper half is
-    magenta."""
+    """A tube whose texture, the same colour along it, goes around once, with a seam; its upper half
+    is magenta."""
     buffer = Buffer()
     places = [(r, c) for r in range(rings + 1) for c in range(around + 1)]
     angles = [2 * math.pi * (c % around) / around for _, c in places]
@@ -103,8 +103,8 @@ def tube(rings, around):
 
 
 def leaning(buffer, position, attributes, parts, look):
-    """A GLB with two parts, lists of indices, of one mesh. look: rows of the texture (None: there is
-    none), wrap beyond it, material: members of that of the first part, turns: whether it turns
+    """A GLB with two parts, lists of indices, of one mesh. look: rows of the texture (None: there
+    is none), wrap beyond it, material: members of that of the first part, turns: whether it turns
     instead of leaning."""
     rows, material, wrap = look["rows"], look.get("material"), look.get("wrap", CLAMP)
     target = {"POSITION": buffer.floats([[0.5 * y, 0, 0] for _, y, _ in position], "VEC3")}
@@ -139,5 +139,5 @@ def leaning(buffer, position, attributes, parts, look):
     text = json.dumps(root).encode()
     text = text.ljust((len(text) + 3) // 4 * 4)
     size = 12 + 8 + len(text) + 8 + len(buffer.bytes)
-    return (struct.pack("<4sIIII", b"glTF", 2, size, len(text), 0x4E4F534A) + text +
-            struct.pack("<II", len(buffer.bytes), 0x004E4942) + buffer.bytes)
+    return (struct.pack("<4sIIII", b"glTF", 2, size, len(text), 0x4E4F534A) + text
+            + struct.pack("<II", len(buffer.bytes), 0x004E4942) + buffer.bytes)

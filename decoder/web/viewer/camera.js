@@ -22,8 +22,8 @@ export class Camera {
     for (const listener of this.listeners) listener();
   }
 
-  /** Returns to the first view, with a mesh in its middle, as large as fits. box: of the mesh, in the
-   * world; points: its vertices, [x, y, z]. */
+  /** Returns to the first view, with a mesh in its middle, as large as fits. box: of the mesh, in
+   * the world; points: its vertices, [x, y, z]. */
   look(box, points) {
     Object.assign(this, kFirstView, { target: [...box.centre], offset: [0, 0, 0], pan: [0, 0, 0] });
     this.points = points;
@@ -114,8 +114,8 @@ export class Camera {
     this.distance = Math.max(least, Math.min(most, this.distance * factor));
   }
 
-  /** Handles input: drag to turn, shift or the right button to move, wheel to zoom; two fingers move
-   * and zoom. */
+  /** Handles input: drag to turn, shift or the right button to move, wheel to zoom; two fingers
+   * move and zoom. */
   attach(canvas) {
     const held = new Map();
     const spread = () => {

@@ -74,7 +74,8 @@ export class Materials {
     return texture;
   }
 
-  /** Returns the material with the number of a part; without one, white under colours of vertices. */
+  /** Returns the material with the number of a part; without one, white under colours of vertices.
+   * */
   at(number, hasTints) {
     return this.list[number] ?? (hasTints ? { ...kPlain, base: [1, 1, 1, 1] } : kPlain);
   }

@@ -115,9 +115,10 @@ export class Viewer {
     gl.vertexAttribPointer(place, 2, gl.FLOAT, false, 0, 0);
   }
 
-  /** Sets the mesh. The first frame follows with showFrame(), materials perhaps with setMaterials().
-   * look: { uvs, tints, parts }: texture coordinates, [name, values]; colours of vertices { values,
-   * components } or undefined; triangles of each material: { start, count, material }. */
+  /** Sets the mesh. The first frame follows with showFrame(), materials perhaps with
+   * setMaterials(). look: { uvs, tints, parts }: texture coordinates, [name, values]; colours of
+   * vertices { values, components } or undefined; triangles of each material: { start, count,
+   * material }. */
   setMesh(numVertices, triangles, look) {
     for (const buffer of this.buffers.values()) this.gl.deleteBuffer(buffer);
     this.buffers.clear();
@@ -160,8 +161,8 @@ export class Viewer {
       isPacked, isPacked ? 8 : 0, 0);
   }
 
-  /** Shows a frame, whose arrays may be reused afterwards. coordinates and box ([min x, y, z, max x, y,
-   * z]): relative to `centre`. normals and distances are optional. */
+  /** Shows a frame, whose arrays may be reused afterwards. coordinates and box ([min x, y, z, max
+   * x, y, z]): relative to `centre`. normals and distances are optional. */
   showFrame({ coordinates, normals, distances, box, centre }) {
     this.setAttribute("position", coordinates);
     this.setAttribute("normal", normals);
@@ -341,7 +342,8 @@ export class Viewer {
     gl.disable(gl.CULL_FACE);
   }
 
-  /** Binds an attribute to the floats of a buffer; without components, to the constant white or 0. */
+  /** Binds an attribute to the floats of a buffer; without components, to the constant white or 0.
+   * */
   point(name, components, buffer = name) {
     const { gl } = this;
     const place = kAttributes.indexOf(name);

@@ -5,7 +5,7 @@ import math
 
 
 def front(points):
-    """The points that no other beats in both error and size: by error, each smaller than the last."""
+    """The points that no other beats in both error and size, by error; their sizes decrease."""
     best = []
     for kg, size in sorted(points):
         if kg > 0 and (not best or size < best[-1][1]):
@@ -98,6 +98,6 @@ def power_fit(points):
     """(c, p) of y = c x^p by least squares in logarithms; two different x at least."""
     logs = [(math.log(x), math.log(y)) for x, y in points]
     mean_x, mean_y = (sum(column) / len(logs) for column in zip(*logs))
-    p = (sum((x - mean_x) * (y - mean_y) for x, y in logs) /
-         sum((x - mean_x) ** 2 for x, _ in logs))
+    p = (sum((x - mean_x) * (y - mean_y) for x, y in logs)
+         / sum((x - mean_x) ** 2 for x, _ in logs))
     return math.exp(mean_y - p * mean_x), p

@@ -75,7 +75,7 @@ def peer(name, title, colour, what, packer=None):
 
 def paper(name, title, colour, what, options, clusters=(10, 30)):
     return Codec(name, title, colour, what, ladders=tuple(
-        tuple(f"{PAPER.format(clusters=n)} {options} --components {l}" for l in COMPONENTS)
+        tuple(f"{PAPER.format(clusters=n)} {options} --components {count}" for count in COMPONENTS)
         for n in clusters))
 
 
@@ -225,7 +225,7 @@ class Toolbox:
         self._said = {}
 
     def path(self, tool):
-        """The path of a program, or None. Tools of this project are only looked for in the folder."""
+        """The path of a program, or None. Our own tools are looked for in the folder only."""
         if tool not in self.OWN:
             return shutil.which(tool)
         own = self.folder / tool

@@ -14,7 +14,7 @@ import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "conformance" / "cli"))
-from tools_testing import INPUTS, read_obj, read_pc2, write_obj, write_pc2  # noqa: E402
+from tools_testing import INPUTS, read_obj, read_pc2, write_obj, write_pc2
 
 
 class Tools:

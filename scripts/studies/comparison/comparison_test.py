@@ -15,11 +15,11 @@ import xml.etree.ElementTree
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1] / name)
                 for name in ("comparison", "figures")]
-import arithmetic  # noqa: E402
-import codec_table  # noqa: E402
-import inputs  # noqa: E402
-import measure  # noqa: E402
-import report  # noqa: E402
+import arithmetic
+import codec_table
+import inputs
+import measure
+import report
 
 SEQUENCE = measure.Sequence("a & b", None, None, 100, 10)
 
@@ -89,7 +89,8 @@ class BdRate(unittest.TestCase):
 
     def test_mean_of_a_factor_that_grows(self):
         # Twice the bytes at one end, eight times at the other, straight in logarithms: four times.
-        self.assertAlmostEqual(arithmetic.bd_rate([(0.1, 800), (1, 20)], [(0.1, 100), (1, 10)]), 300)
+        self.assertAlmostEqual(arithmetic.bd_rate([(0.1, 800), (1, 20)], [(0.1, 100), (1, 10)]),
+                               300)
 
     def test_only_errors_that_both_reach(self):
         other = [(kg, 2 * size) for kg, size in self.REFERENCE[1:3]]
@@ -200,11 +201,15 @@ class OwnCodecs(unittest.TestCase):
     def test_complaints(self):
         for words, complaint in ((("a b", self.ENCODE, self.DECODE, "1"), "only"),
                                  (("main", self.ENCODE, self.DECODE, "1"), "built-in"),
-                                 (("x", "enc {mesh} {step}", self.DECODE, "1"), "{file} is missing"),
-                                 (("x", "enc {step} {file}", self.DECODE, "1"), "{mesh} or {points}"),
+                                 (("x", "enc {mesh} {step}", self.DECODE, "1"),
+                                  "{file} is missing"),
+                                 (("x", "enc {step} {file}", self.DECODE, "1"),
+                                  "{mesh} or {points}"),
                                  (("x", self.ENCODE, "dec {file}", "1"), "{out} is missing"),
-                                 (("x", self.ENCODE, "dec {mesh} {file} {out}", "1"), "unknown {mesh}"),
-                                 (("x", "enc {mesh} {file}", self.DECODE, "1,2"), "{step} is missing"),
+                                 (("x", self.ENCODE, "dec {mesh} {file} {out}", "1"),
+                                  "unknown {mesh}"),
+                                 (("x", "enc {mesh} {file}", self.DECODE, "1,2"),
+                                  "{step} is missing"),
                                  (("x", self.ENCODE, self.DECODE, ","), "no steps"),
                                  (("x", "awk '{' {file}", self.DECODE, "1"), "double the braces")):
             with self.subTest(words=words), self.assertRaises(codec_table.BadCodec) as raised:
@@ -269,8 +274,9 @@ class Missing(unittest.TestCase):
         return codec_table.Toolbox(self.build / "bin").missing(codec)
 
     def test_programs_of_ours(self):
-        self.assertEqual(self.reason(self.DRACO), f"peer_codec is not in {self.build / 'bin'}; leave "
-                                                  "out --bin to have it built")
+        self.assertEqual(self.reason(self.DRACO),
+                         f"peer_codec is not in {self.build / 'bin'}; leave out --bin to have it "
+                         "built")
         (self.build / "CMakeCache.txt").touch()
         self.assertIn(f"`cmake '{self.build}' && cmake --build '{self.build}' --target peer_codec`",
                       self.reason(self.DRACO))
@@ -286,8 +292,8 @@ class Missing(unittest.TestCase):
 
     def test_programs_of_others(self):
         with unittest.mock.patch.object(codec_table.shutil, "which", return_value=None):
-            self.assertEqual(self.reason(dataclasses.replace(self.LORENZO, prepare=(), encode=("xz",),
-                                                             decode=())),
+            self.assertEqual(self.reason(dataclasses.replace(self.LORENZO, prepare=(),
+                                                             encode=("xz",), decode=())),
                              "xz is not installed; run scripts/setup --compare")
 
 
@@ -303,7 +309,8 @@ class Reports(unittest.TestCase):
         table = report.rates_table([SEQUENCE], self.curves, self.POINTS, 0.1)
         self.assertEqual(table.rows, [["a & b", "4.00", "8.00", "-"]])
         ratios = report.ratios_table([SEQUENCE], self.curves, self.POINTS, [0.1, 0.5])
-        self.assertEqual(ratios.rows, [["Baseline", "2.00", "2.00"], ["draco per frame", "-", "18.8"]])
+        self.assertEqual(ratios.rows,
+                         [["Baseline", "2.00", "2.00"], ["draco per frame", "-", "18.8"]])
         bd = report.bd_table([SEQUENCE], self.curves, self.POINTS)
         self.assertEqual(bd.rows[0], ["Baseline", "+100.0 %", "+100.0 %"])
         extra = report.extra_table([SEQUENCE], self.curves, self.POINTS, [0.1, 0.5])
@@ -312,7 +319,8 @@ class Reports(unittest.TestCase):
     def test_tools_are_compared_with_main_without_clusters(self):
         curves = report.curves_of(codec_table.MAIN_ABLATIONS[:3], ("all",))
         names = [curve.codec.name for curve in curves]
-        points = [point(name, kg, size) for name, sizes in zip(names, ((500, 50), (600, 60), (900, 90)))
+        points = [point(name, kg, size)
+                  for name, sizes in zip(names, ((500, 50), (600, 60), (900, 90)))
                   for kg, size in zip((0.1, 1.1), sizes)]
         tables = report.ablation_tables([SEQUENCE], curves, points, [0.1])
         self.assertEqual([t.title.split(" at ")[0] for t in tables[::2]],
@@ -323,8 +331,9 @@ class Reports(unittest.TestCase):
 
     def test_tables_of_the_readme(self):
         rates = report.readme_rates([SEQUENCE], self.curves, self.POINTS, [0.1, 1.1])
-        self.assertEqual(rates.rows, [["Main", "4.00 / 0.400"], ["Baseline", "8.00 / 0.800 (+100 %)"],
-                                      ["draco per frame", "- / 16.0 (-)"]])
+        self.assertEqual(rates.rows,
+                         [["Main", "4.00 / 0.400"], ["Baseline", "8.00 / 0.800 (+100 %)"],
+                          ["draco per frame", "- / 16.0 (-)"]])
         table = report.readme_bd_rates([SEQUENCE, SEQUENCE], self.curves, self.POINTS, 0.1)
         row = ["a & b: 100 vertices, 10 frames", "4.00", "+100 %", "-"]
         self.assertEqual(table.rows, [row, row, ["geometric mean", *row[1:]]])

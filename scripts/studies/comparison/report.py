@@ -56,8 +56,8 @@ class Curve:
     title: str
 
     def points(self, points, sequence):
-        return [p for p in points if (p.sequence, p.codec, p.gof) ==
-                (sequence.name, self.codec.name, self.gof)]
+        wanted = (sequence.name, self.codec.name, self.gof)
+        return [p for p in points if (p.sequence, p.codec, p.gof) == wanted]
 
     def sizes(self, points, sequence):
         return [(p.kg_error_percent, p.bytes) for p in self.points(points, sequence)]
@@ -115,7 +115,7 @@ def rates_table(sequences, curves, points, kg):
 
 
 def ratios_table(sequences, curves, points, kgs):
-    """Size against the first curve, geometric mean over the sequences where both reach the error."""
+    """Size against the first curve: geometric mean of the sequences where both reach the error."""
     rows = []
     for curve in curves[1:]:
         row = [curve.title]
@@ -124,8 +124,8 @@ def ratios_table(sequences, curves, points, kgs):
                      for s in sequences]
             ratios = [a / b for a, b in pairs if a is not None and b is not None]
             mean = arithmetic.geometric_mean(ratios)
-            few = f" ({len(ratios)} of {len(sequences)})" if 0 < len(ratios) < len(sequences) else ""
-            row.append(number(mean) + few)
+            some = 0 < len(ratios) < len(sequences)
+            row.append(number(mean) + (f" ({len(ratios)} of {len(sequences)})" if some else ""))
         rows.append(row)
     return Table(f"Size against {curves[0].title} at equal KG error, geometric mean",
                  ["codec", *(f"KG {kg:g} %" for kg in kgs)], rows)
@@ -278,8 +278,8 @@ def readme_bd_rates(sequences, curves, points, kg):
              number(bpvf_at(curves[0], points, s, kg)),
              *(_whole_percent(column[i]) for column in columns)]
             for i, s in enumerate(sequences)]
-    rows.append(["geometric mean", number(arithmetic.geometric_mean(bpvf_at(curves[0], points, s, kg)
-                                                          for s in sequences)),
+    rates = (bpvf_at(curves[0], points, s, kg) for s in sequences)
+    rows.append(["geometric mean", number(arithmetic.geometric_mean(rates)),
                  *(_whole_percent(mean_bd_rate(column)) for column in columns)])
     return Table("", ["BD-rate", f"{curves[0].title}: bpvf at {kg:g} %",
                       *(c.title for c in curves[1:])], rows)

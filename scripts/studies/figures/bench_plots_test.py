@@ -86,7 +86,8 @@ class Plots(unittest.TestCase):
 
     def test_it_is_well_formed_and_in_words_of_any_language(self):
         title = "<é & ﷽>"
-        svg = xml.etree.ElementTree.fromstring(dataclasses.replace(self.PLOT, title=title).svg(TOOL))
+        plot = dataclasses.replace(self.PLOT, title=title)
+        svg = xml.etree.ElementTree.fromstring(plot.svg(TOOL))
         texts = [e.text for e in svg.iter("{http://www.w3.org/2000/svg}text")]
         for word in (title, "c", "x", "y"):
             self.assertIn(word, texts)

@@ -71,9 +71,9 @@ def picture(tools, name, clusters):
         for partition in PARTITIONS:
             stream = folder / f"{partition}.rlpc"
             report = json.loads(run(
-                tools / "rlpcenc", INPUTS / f"{name}.obj", "--points", INPUTS / f"{name}.pc2", "-o", stream,
-                "--profile", "baseline", "--partition", partition, "--clusters", str(clusters),
-                "--gof", "all", "--kg", KG_PERCENT, "--json", "-q"))
+                tools / "rlpcenc", INPUTS / f"{name}.obj", "--points", INPUTS / f"{name}.pc2", "-o",
+                stream, "--profile", "baseline", "--partition", partition, "--clusters",
+                str(clusters), "--gof", "all", "--kg", KG_PERCENT, "--json", "-q"))
             run(tools / "rlpcinfo", stream, "--pictures", folder / partition)
             svg = (folder / partition / "clusters.svg").read_text(encoding="utf-8")
             panels.append((svg, f"--partition {partition}",

@@ -88,14 +88,16 @@ def placing(vertices):
     high = [max(v[i] for v in seen) for i in range(2)]
     scale = min((PANEL - 14) / (high[0] - low[0]), (HEIGHT - 14) / (high[1] - low[1]))
     middle = [(low[i] + high[i]) / 2 for i in range(2)]
-    return lambda v: (PANEL / 2 + scale * (v[0] - middle[0]), HEIGHT / 2 - scale * (v[1] - middle[1]))
+    return lambda v: (PANEL / 2 + scale * (v[0] - middle[0]),
+                      HEIGHT / 2 - scale * (v[1] - middle[1]))
 
 
 def encoded(tools, folder, quality):
     """(mesh of the frame, report) of a stream of this quality."""
     stream = folder / f"{quality}.rlpc"
-    done = subprocess.run([tools / "rlpcenc", INPUT, "--points", INPUT.with_suffix(".pc2"), "-o", stream,
-                           "--quality", quality, "--json", "-q"], check=True, capture_output=True)
+    done = subprocess.run([tools / "rlpcenc", INPUT, "--points", INPUT.with_suffix(".pc2"), "-o",
+                           stream, "--quality", quality, "--json", "-q"], check=True,
+                          capture_output=True)
     subprocess.run([tools / "rlpcdec", stream, "-q", "-o", folder / f"{quality}_%d.obj", "--frames",
                     f"{FRAME}-{FRAME}"], check=True)
     return read_obj(folder / f"{quality}_{FRAME}.obj"), json.loads(done.stdout)
@@ -121,7 +123,8 @@ def picture(tools):
     for index, (quality, ((vertices, faces), report)) in enumerate(zip(QUALITIES, results), 1):
         error = report["metrics"]["kg_error_percent"]
         panels += panel(index, draw_mesh(vertices, faces, place), f"--quality {quality}",
-                        f"{report['bytes'] / 1000:.1f} kB, {report['bpvf']:.2f} bpvf, KG {error:.2g} %")
+                        f"{report['bytes'] / 1000:.1f} kB, {report['bpvf']:.2f} bpvf, "
+                        f"KG {error:.2g} %")
     width, height = PANEL * (1 + len(QUALITIES)), HEIGHT + CAPTION
     return "\n".join([
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '

@@ -22,8 +22,8 @@ class Series:
 
 @dataclasses.dataclass
 class Plot:
-    """Points are above 0 where an axis is logarithmic. `categories`: words of the horizontal axis at
-    1, 2, 3 ... in place of numbers."""
+    """Points are above 0 where an axis is logarithmic. `categories`: words of the horizontal axis
+    at 1, 2, 3 ... in place of numbers."""
     title: str
     series: list
     x_label: str

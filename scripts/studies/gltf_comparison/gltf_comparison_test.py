@@ -11,14 +11,14 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / "scripts" / "studies" / name) for name in ("gltf_comparison", "comparison",
-                                                          "figures")]
-import gltf_file  # noqa: E402
-import measure  # noqa: E402
-import paths  # noqa: E402
-import report  # noqa: E402
-import soup  # noqa: E402
-import static_meshes  # noqa: E402
+sys.path[:0] = [str(ROOT / "scripts" / "studies" / name)
+                for name in ("gltf_comparison", "comparison", "figures")]
+import gltf_file
+import measure
+import paths
+import report
+import soup
+import static_meshes
 
 
 def turned(points, degrees):

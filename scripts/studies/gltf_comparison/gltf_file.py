@@ -94,8 +94,8 @@ def _floats(document, binary, accessor):
 def _on_grid(seconds, fps, milliseconds=False):
     frames = seconds * fps
     off = abs(frames - round(frames))
-    return (off <= min(1e-3 + frames * 2 ** -23, 0.02) or
-            milliseconds and off <= 0.00051 * fps)
+    return (off <= min(1e-3 + frames * 2 ** -23, 0.02)
+            or milliseconds and off <= 0.00051 * fps)
 
 
 def clips(path):

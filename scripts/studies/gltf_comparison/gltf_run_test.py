@@ -13,8 +13,9 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 HERE = pathlib.Path(__file__).resolve().parent
 TULIP = ROOT / "streams" / "inputs" / "tulip.glb"
-sys.path[:0] = [str(HERE), str(ROOT / "scripts" / "studies" / "comparison"), str(ROOT / "decoder" / "web" / "player")]
-import chromium  # noqa: E402
+sys.path[:0] = [str(HERE), str(ROOT / "scripts" / "studies" / "comparison"),
+                str(ROOT / "decoder" / "web" / "player")]
+import chromium
 
 
 class Tools:

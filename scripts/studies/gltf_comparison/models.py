@@ -22,8 +22,8 @@ TITLES = {"default": "RLPC", "high": "High", "all": "--gof all", "equal": "RLPC,
 
 DEFINITIONS = (
     "kB: 1000 bytes, of whole files: all clips, attributes, materials and images. gltfpack: "
-    "`gltfpack -cc`, then gzip -9. RLPC: `rlpcenc --animation all --fps 30`; High: with --profile high, "
-    "which is in preparation; equal KG: with --kg and the error of gltfpack's file.",
+    "`gltfpack -cc`, then gzip -9. RLPC: `rlpcenc --animation all --fps 30`; High: with --profile "
+    "high, which is in preparation; equal KG: with --kg and the error of gltfpack's file.",
     "KG error: 100 * ||B - B'|| / ||B - E(B)||, B the positions of all vertices in all frames at "
     "30 frames a second, E(B) the mean vertex of each frame, by rlpccmp. gltfpack reorders and "
     "merges vertices: each vertex of the source is compared with that of gltfpack's file whose "
@@ -194,4 +194,3 @@ def drawn_table(models):
     return report.Table(
         "What is drawn", ["model", "codec", "KG, %", "UV, 1/4096", "normals, first frame",
                           "normals, middle", "seams", "closed in source", "closed", "gap, %"], rows)
-

@@ -15,7 +15,7 @@ import report
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "decoder" / "web" / "player"))
-import chromium  # noqa: E402
+import chromium
 
 SIZE = (1440, 512)
 PICTURES = 3  # for each file: first frame, the one in the middle, and one after that

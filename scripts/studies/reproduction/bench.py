@@ -34,9 +34,9 @@ class Run:
 
 
 class Bench:
-    """`sequence`: measure.Sequence. `folder`: for streams, which are removed. KG errors are relative
-    to one mean of all frames, as in the papers; target() is for the encoder, which has the mean of
-    each frame."""
+    """`sequence`: measure.Sequence. `folder`: for streams, which are removed. KG errors are
+    relative to one mean of all frames, as in the papers; target() is for the encoder, which has the
+    mean of each frame."""
 
     def __init__(self, tools, sequence, folder, say=print):
         self.tools, self.sequence, self.folder, self.say = tools, sequence, folder, say

@@ -12,7 +12,7 @@ class Claims(unittest.TestCase):
 
     def setUp(self):
         self.worse = runs(*self.WORSE)
-        self.half = runs(*((l, bpvf / 2, kg) for l, bpvf, kg in self.WORSE))
+        self.half = runs(*((n, bpvf / 2, kg) for n, bpvf, kg in self.WORSE))
 
     def test_verdicts(self):
         self.assertEqual([claims.verdict(good, 4) for good in (4, 3, 2, 0)],
@@ -34,7 +34,7 @@ class Claims(unittest.TestCase):
                          "Holds: x (3 of 3; -50.0 % to -50.0 % bits at equal error).")
         self.assertEqual(claims.every_error("x", self.worse, self.half),
                          "Does not hold: x (0 of 3; +100.0 % to +100.0 % bits at equal error).")
-        slightly = runs(*((l, 1.005 * bpvf, kg) for l, bpvf, kg in self.WORSE))
+        slightly = runs(*((n, 1.005 * bpvf, kg) for n, bpvf, kg in self.WORSE))
         self.assertIn("Does not hold", claims.every_error("x", slightly, self.worse))
         self.assertIn("Holds", claims.every_error("x", slightly, self.worse, claims.NEGLIGIBLE))
         apart = runs((2, 1.0, 20.0), (4, 2.0, 10.0))

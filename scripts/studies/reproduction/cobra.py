@@ -34,7 +34,8 @@ NOTE = (
     "orders 1 to 4 chosen for each basis vector, and --basis-steps cobra; its entropy coder is "
     "that of the format. NB: basis vectors, the best of several numbers for each error. 64 bits, "
     "and uniform (Amjoun 2007): the same streams, with the bits of the basis replaced by 64 per "
-    f"value, or by the entropy of uniformly quantised values at {BASIS_SHARE:g} times the KG error.")
+    f"value, or by the entropy of uniformly quantised values at {BASIS_SHARE:g} times the KG "
+    "error.")
 STUDY_NOTE = (
     "Of cobra_basis, in doubles: coefficients are exact, Algorithm 1 codes the basis, and its "
     "steps are scaled to the same KG error for every rule and predictor. Entropies are of order 0, "
@@ -169,7 +170,8 @@ class Reproduction(paper.Paper):
                      for name, runs in self.curves.items()}
             known = rates["direct"] and rates["cobra"]
             vectors = [r.components for r in self.curves["cobra"] if r.kg <= REACHED * kg]
-            rows.append([f"{kg:g}", f"{kg * self.bench.norm:.4g}", str(vectors[0]) if vectors else report.NOTHING,
+            rows.append([f"{kg:g}", f"{kg * self.bench.norm:.4g}",
+                         str(vectors[0]) if vectors else report.NOTHING,
                          *map(report.number, rates.values()),
                          claims.percent(rates["cobra"] / rates["direct"], 1) if known
                          else report.NOTHING])

@@ -123,10 +123,10 @@ def parts(streams, near):
 
 
 def total_saved(curves, share):
-    """The gain over a basis of 64 bits per value, which takes `share` of everything. The claim is of
-    animations in which it takes half at most; of more, more can be saved."""
-    claim = (f"COBRA takes about {100 * published.TOTAL_SAVED:.0f} % fewer bits of everything than a "
-             f"basis of {published.DIRECT_BITS} bits per value")
+    """The gain over a basis of 64 bits per value, which takes `share` of everything. The claim is
+    of animations in which it takes half at most; of more, more can be saved."""
+    claim = (f"COBRA takes about {100 * published.TOTAL_SAVED:.0f} % fewer bits of everything than "
+             f"a basis of {published.DIRECT_BITS} bits per value")
     if share <= published.MOST_BASIS:
         return claims.every_error(f"{claim}, or still fewer", curves["cobra"], curves["direct"],
                                   1 - published.TOTAL_SAVED)
@@ -159,4 +159,5 @@ def claims_of_paper(made, near):
     rules = {rule["name"]: rule for rule in made.study["rules"]}
     return [*uniform_steps(rules["uniform"]), cobra_steps(rules["cobra"]),
             *eigenvalue_steps(rules["eigenvalue"]), *fewer_bits(rules),
-            *predictors(made.entropies()), *parts(made.streams, near), *whole(made.curves, near.other_basis["direct"] / near.rate("direct"))]
+            *predictors(made.entropies()), *parts(made.streams, near),
+            *whole(made.curves, near.other_basis["direct"] / near.rate("direct"))]

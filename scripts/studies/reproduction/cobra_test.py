@@ -83,9 +83,9 @@ class Whole(unittest.TestCase):
         curves = {"direct": direct, "cobra": cobra}
         self.assertEqual(
             findings.total_saved(curves, 0.87),
-            "Not comparable: COBRA takes about 25 % fewer bits of everything than a basis of 64 bits "
-            "per value (that basis takes 87 % of everything here, in the paper 50 % at most; here "
-            "-75 % to -75 % bits).")
+            "Not comparable: COBRA takes about 25 % fewer bits of everything than a basis of 64 "
+            "bits per value (that basis takes 87 % of everything here, in the paper 50 % at most; "
+            "here -75 % to -75 % bits).")
         self.assertTrue(findings.total_saved(curves, 0.5).startswith("Holds: "))
 
 

@@ -4,7 +4,6 @@ import csv
 import dataclasses
 import html
 
-import plots
 import report
 
 

@@ -7,16 +7,15 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "scripts" / "studies" / folder) for folder in ("comparison", "figures")]
-import codec_table  # noqa: E402
-import inputs  # noqa: E402
-import measure  # noqa: E402
-import plots  # noqa: E402
-import report  # noqa: E402
+import codec_table
+import inputs
+import measure
+import plots
 
-import bench as benches  # noqa: E402
-import models  # noqa: E402
-import not_reproduced  # noqa: E402
-import page  # noqa: E402
+import bench as benches
+import models
+import not_reproduced
+import page
 
 OURS = {"Main": ("main", "#111111"), "High": ("high", "#8e44ad")}
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#111111")
@@ -44,8 +43,8 @@ class Paper:
 
     @property
     def norm_note(self):
-        return ("KG errors are 100 * ||A - B|| / ||A - E(A)||, E(A) being one mean of all vertices of "
-                "all frames, the norm of the published figures. With the mean of each frame, as "
+        return ("KG errors are 100 * ||A - B|| / ||A - E(A)||, E(A) being one mean of all vertices "
+                "of all frames, the norm of the published figures. With the mean of each frame, as "
                 "rlpcenc --kg has them and rlpccmp states them first, those of this sequence are "
                 f"{self.bench.norm:.4g} times as large.")
 
@@ -96,8 +95,8 @@ def find_inputs(words):
     """The bundled elephant; bundled animations by name; or anything that rlpcenc reads."""
     bundled = ROOT / "streams" / "inputs"
     return inputs.find(
-        str(bundled / f"{word}.obj") if (bundled / f"{word}.obj").is_file() and
-        not pathlib.Path(word).exists() else word for word in words or ["elephant"])
+        str(bundled / f"{word}.obj") if (bundled / f"{word}.obj").is_file()
+        and not pathlib.Path(word).exists() else word for word in words or ["elephant"])
 
 
 def check_tools(toolbox, paper):

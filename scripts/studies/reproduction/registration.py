@@ -46,28 +46,29 @@ NOTE = (
     "residuals (type 1) or with them (type 2), or is predicted from its neighbours (type 3), which "
     "the encoder chooses for each patch by its cost. The DPCM of type 3 is replaced by the mean of "
     "the ring (--frame-weights plain). Vertices correspond by index, so that ICP is not needed. "
-    "Clusters are made once, Lloyd's too. Besides, as many clusters as by k-way: spectral ones, and "
-    "clusters by motion. "
+    "Clusters are made once, Lloyd's too. Besides, as many clusters as by k-way: spectral ones, "
+    "and clusters by motion. "
     "Learned: without clusters and with those by motion, with the weights that each vertex learns. "
-    "Main and High: the profiles of this codec as they choose themselves. The whole sequence is one "
-    "group of frames; all bytes of the stream are counted.")
+    "Main and High: the profiles of this codec as they choose themselves. The whole sequence is "
+    "one group of frames; all bytes of the stream are counted.")
 TABLE_1_NOTE = (
     f"Seconds of clustering: what the first two frames take more to encode than without patches, "
-    f"the fastest of {TIMED} encodings; all frames: the same, once, with the search for the motions "
-    "in each frame. Published: on a 3.6 GHz PC, for one mesh.")
+    f"the fastest of {TIMED} encodings; all frames: the same, once, with the search for the "
+    "motions in each frame. Published: on a 3.6 GHz PC, for one mesh.")
 TABLE_5_NOTE = (
     f"Averages of frames but the first. Quality: that of {published.PSNR} dB, by the paper's "
-    "definition (section 3.2), a mean of frames. CR: 96 bits per bpvf. Against k-way: the ratios of "
-    f"both interpolated at {published.PSNR} dB. A vertex is of type 1 if it follows a motion and "
-    "has no residual other than 0; published ones need an error below a quarter of the mean motion.")
+    "definition (section 3.2), a mean of frames. CR: 96 bits per bpvf. Against k-way: the ratios "
+    f"of both interpolated at {published.PSNR} dB. A vertex is of type 1 if it follows a motion "
+    "and has no residual other than 0; published ones need an error below a quarter of the mean "
+    "motion.")
 COW_NOTE = (
-    "The paper's spectral clustering takes 2.3 bpvf at 44.7 dB in table 5 and at d_a 0.47 in table 6; "
-    "here, 44.7 dB is a KG error of {kg:.2f} %, and 0.47 % is {psnr:.1f} dB. Table 6 prints d_a 7.4 "
-    "for CPCA at 2.0 bpvf, which is taken as 1.47, as in Amjoun and Strasser 2007.")
+    "The paper's spectral clustering takes 2.3 bpvf at 44.7 dB in table 5 and at d_a 0.47 in table "
+    "6; here, 44.7 dB is a KG error of {kg:.2f} %, and 0.47 % is {psnr:.1f} dB. Table 6 prints d_a "
+    "7.4 for CPCA at 2.0 bpvf, which is taken as 1.47, as in Amjoun and Strasser 2007.")
 DANCE_NOTE = "The paper has the first 100 frames of the dance; here are all of the sequence given."
 TABLE_3_NOTE = (
-    "Table 3 prints six values of d_a for ten rows; they are taken as those of the last six. CPCA's "
-    "0.076 is that of 4.7 bpvf elsewhere, its ratio that of 2.8 bpvf and 0.139.")
+    "Table 3 prints six values of d_a for ten rows; they are taken as those of the last six. "
+    "CPCA's 0.076 is that of 4.7 bpvf elsewhere, its ratio that of 2.8 bpvf and 0.139.")
 
 
 class Reproduction(paper.Paper):
@@ -184,7 +185,8 @@ class Reproduction(paper.Paper):
             cells += [f"{x:.1f}" for x in detail.means] if detail else [report.NOTHING] * 3
             gain = self.gain(name)
             rows.append([*cells, f"{published.RAW / run.bpvf:.1f}", f"{run.psnr:.2f}",
-                         f"{run.kg:.3f}", f"{run.frame_kg:.3f}", claims.percent(gain, 1) if gain else report.NOTHING])
+                         f"{run.kg:.3f}", f"{run.frame_kg:.3f}",
+                         claims.percent(gain, 1) if gain else report.NOTHING])
         head = ["clustering"]
         for where in (", published", ""):
             head += [f"{what}{where}" for what in ("type 1", "type 2", "type 3", "CR", "PSNR, dB")]
@@ -202,8 +204,8 @@ class Reproduction(paper.Paper):
             ours = [claims.rate_at(runs, kg) for runs in self.curves.values()]
             rows.append([f"{kg:g}", f"{kg * self.bench.norm:.4g}",
                          *map(report.number, [*theirs, *ours])])
-        head = ["KG (d_a), %", "KG of frames, %", *(f"{coder}, published" for coder in PUBLISHED_COLOURS),
-                *self.curves]
+        head = ["KG (d_a), %", "KG of frames, %",
+                *(f"{coder}, published" for coder in PUBLISHED_COLOURS), *self.curves]
         return report.Table("Table 6: bits per vertex and frame at a KG error", head, rows)
 
     def plot_curves(self):
@@ -226,7 +228,7 @@ class Reproduction(paper.Paper):
         self.heading("Figure 13 (a): compression ratio of each frame")
         self.plot("frames", f"compression ratio of each frame, about {published.PSNR} dB",
                   [registration_frames.series(name, self.details[name].ratios(),
-                                               CLUSTERINGS[name][1]) for name in IN_PLOTS],
+                                              CLUSTERINGS[name][1]) for name in IN_PLOTS],
                   "frame", "compression ratio", log_x=False)
         detail = self.details["k-way"]
         if not detail.has_motions:

@@ -64,8 +64,8 @@ def published_gains(model):
                       for name, row in table.items() if name != "k-way")
     shares = {name: (row.type1 + row.type2) / model.num_vertices for name, row in table.items()}
     moved = ", ".join(f"{name}: {100 * share:.0f} %" for name, share in shares.items())
-    found = (f"In table 5 itself, for the {model.name}: gains over k-way, {gains}; vertices of types "
-             f"1 and 2, {moved}")
+    found = (f"In table 5 itself, for the {model.name}: gains over k-way, {gains}; vertices of "
+             f"types 1 and 2, {moved}")
     below = sum(share <= published.MOVED for share in shares.values())
     return found + (f"; {below} of {len(shares)} not over {100 * published.MOVED:.0f} %." if below
                     else ".")
@@ -74,7 +74,8 @@ def published_gains(model):
 def moved_vertices(moved):
     """moved: name and share of types 1 and 2."""
     more = ", ".join(f"{name}: {100 * share:.0f} %" for name, share in moved)
-    return claims.counted(f"vertices of types 1 and 2 are over {100 * published.MOVED:.0f} % of all",
+    most = f"{100 * published.MOVED:.0f} %"
+    return claims.counted(f"vertices of types 1 and 2 are over {most} of all",
                           sum(share > published.MOVED for _, share in moved), len(moved), more)
 
 

@@ -1,5 +1,5 @@
-"""Single frames of streams with patches: types of vertices as in the registration paper, compression
-ratios, PSNR; and how long clustering takes."""
+"""Single frames of streams with patches: types of vertices as in the registration paper,
+compression ratios, PSNR; and how long clustering takes."""
 
 import math
 import statistics

@@ -3,7 +3,7 @@ says."""
 
 import dataclasses
 
-from models import CHICKEN, COW, DANCE, FACE
+from models import CHICKEN, COW, DANCE
 
 
 @dataclasses.dataclass(frozen=True)
@@ -32,7 +32,8 @@ TABLE_1 = {
 }
 # Frames first to last of the chicken: averages of types 1 and 2, compression ratio, PSNR.
 TABLE_2 = {
-    (40, 60): {"k-way": Performance(733, 2296, 52, 66.1), "Lloyd": Performance(746, 2283, 52.2, 66.5),
+    (40, 60): {"k-way": Performance(733, 2296, 52, 66.1),
+               "Lloyd": Performance(746, 2283, 52.2, 66.5),
                "spectral": Performance(839.6, 2189.4, 52.8, 67)},
     (200, 230): {"k-way": Performance(470, 1787, 45.6, 63.7),
                  "Lloyd": Performance(604, 1632, 47.2, 63.9),
@@ -90,4 +91,3 @@ def clusters_of(model, num_vertices):
     found = {name: max(2, round(num_vertices / size))
              for name, size in VERTICES_PER_CLUSTER.items()}
     return {**found, "spectral": max(2, found["k-way"] // 2)}
-

@@ -1,5 +1,5 @@
-"""Tables 2, 3 and 4 of the registration paper, and two that its text describes: rates by the size of
-clusters, and by the motion of frames."""
+"""Tables 2, 3 and 4 of the registration paper, and two that its text describes: rates by the size
+of clusters, and by the motion of frames."""
 
 import statistics
 

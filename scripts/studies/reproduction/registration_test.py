@@ -56,7 +56,8 @@ class Frames(unittest.TestCase):
                  "slices": [*units(40, 10, 8), {"frame_idx": 2, "bytes": 4}]},
                 {"first_frame": 3, "num_patches": 2, "vertices_of_frame": [self.FIRST, self.NONE],
                  "slices": units(60, 2)}]
-        rows = [{"frame": str(f), "ramanathan_psnr_db": db} for f, db in enumerate(("40", "41.5", "inf"))]
+        rows = [{"frame": str(f), "ramanathan_psnr_db": db}
+                for f, db in enumerate(("40", "41.5", "inf"))]
         self.detail = frames.Detail({"num_vertices": 10, "gofs": gofs}, rows, "")
 
     def test_types_are_of_frames_with_motions(self):
@@ -79,7 +80,6 @@ class Frames(unittest.TestCase):
         self.assertEqual(rows[1], [1, 6, 3, 1, 12, 41.5])
         self.assertEqual(rows[4], [4, "", "", "", 60, ""])
 
-
     def test_frames_are_divided_by_their_motion(self):
         motion, ratios = [0.0, 1.0, 5.0, 2.0, 9.0], [(0, 99), (1, 10), (2, 20), (3, 14), (4, 30)]
         self.assertEqual(frames.by_motion(motion, ratios), (12, 25))
@@ -90,17 +90,20 @@ class Findings(unittest.TestCase):
     def test_each_clustering_counts(self):
         for gain, words in ((1.042, "Holds"), (1.02, "Does not hold")):
             lloyd, spectral = findings.clustering_alone([("Lloyd", gain), ("spectral", 0.9)])
-            self.assertTrue(lloyd.startswith(f"{words}: Lloyd clustering alone brings about 4 %"), lloyd)
+            self.assertTrue(lloyd.startswith(f"{words}: Lloyd clustering alone brings about 4 %"),
+                            lloyd)
             self.assertIn(f"{100 * gain - 100:+.1f} %", lloyd)
-            self.assertTrue(spectral.startswith("Does not hold: spectral clustering alone"), spectral)
+            self.assertTrue(spectral.startswith("Does not hold: spectral clustering alone"),
+                            spectral)
         self.assertTrue(findings.clustering_alone([("Lloyd", None)])[0].startswith("Not tested"))
 
     def test_sizes_of_clusters(self):
         swept = {"k-way": [(50, 8, 30.0), (100, 4, 40.0), (125, 3, 40.3), (200, 2, 20.0)],
                  "Lloyd": [(50, 8, 30.0), (100, 4, 40.0), (125, 3, 39.0), (200, 2, None)]}
         kway, lloyd = findings.best_sizes(swept)
-        self.assertEqual(kway, "Holds: clusters of 100 vertices are optimal for k-way, within 1 % of "
-                               "the best size (1 of 1; best with 125; with 100: -0.7 %).")
+        self.assertEqual(kway,
+                         "Holds: clusters of 100 vertices are optimal for k-way, within 1 % of "
+                         "the best size (1 of 1; best with 125; with 100: -0.7 %).")
         self.assertTrue(lloyd.startswith("Does not hold: clusters of 125 vertices"), lloyd)
         self.assertIn("Not tested", findings.best_sizes({"Lloyd": [(125, 3, None)]})[0])
 

@@ -10,10 +10,11 @@ import unittest
 import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / folder) for folder in ("scripts/studies/comparison", "scripts/studies/figures",
-                                                  "scripts/studies/reproduction", "conformance/cli")]
-from bench import Run  # noqa: E402
-from tools_testing import INPUTS, read_obj, read_pc2, write_obj, write_pc2  # noqa: E402
+sys.path[:0] = [str(ROOT / folder)
+                for folder in ("scripts/studies/comparison", "scripts/studies/figures",
+                               "scripts/studies/reproduction", "conformance/cli")]
+from bench import Run
+from tools_testing import INPUTS, read_obj, read_pc2, write_obj, write_pc2
 
 
 class Tools:
@@ -22,7 +23,7 @@ class Tools:
 
 def runs(*points, clusters=10):
     """points: L, bpvf, KG error."""
-    return [Run("", clusters, l, bpvf, kg, 0.0, 0.0) for l, bpvf, kg in points]
+    return [Run("", clusters, components, bpvf, kg, 0.0, 0.0) for components, bpvf, kg in points]
 
 
 class Reproduced(unittest.TestCase):

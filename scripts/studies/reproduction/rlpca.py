@@ -24,14 +24,14 @@ SETTINGS = {(20, 10): "#009e73", (20, 20): "#0072b2", (10, 10): "#d55e00"}  # fi
 BITS = 12
 
 NOTE = (
-    f"{BITS} bits for eigenshapes, coefficients and seed positions; the whole sequence is one group "
-    "of frames; all bytes of the stream are counted. RLPCA: L components in every cluster; ORLPCA: L "
-    "on average, by rate and distortion; both with the cheapest of the variants that the paper "
-    "leaves open, or with distant vertices of a cluster in place of a triangle. Main and High: the "
-    "profiles of this codec, to the error of RLPCA. Times are those of the tools, reading and "
-    "checking included; published ones are those of a 2.5 GHz Pentium 4 (RLPCA) and an Athlon64 XP "
-    "3200+ (CPCA). The paper prints t_FPS, of display while decoding, in seconds; it is probably "
-    "frames per second.")
+    f"{BITS} bits for eigenshapes, coefficients and seed positions; the whole sequence is one "
+    "group of frames; all bytes of the stream are counted. RLPCA: L components in every cluster; "
+    "ORLPCA: L on average, by rate and distortion; both with the cheapest of the variants that the "
+    "paper leaves open, or with distant vertices of a cluster in place of a triangle. Main and "
+    "High: the profiles of this codec, to the error of RLPCA. Times are those of the tools, "
+    "reading and checking included; published ones are those of a 2.5 GHz Pentium 4 (RLPCA) and an "
+    "Athlon64 XP 3200+ (CPCA). The paper prints t_FPS, of display while decoding, in seconds; it "
+    "is probably frames per second.")
 COW_NOTE = (
     "The paper prints L = 20 in the second row of its cow, the setting of the row above at another "
     "rate; L = 10 is what the rates of both methods fit.")
@@ -64,12 +64,12 @@ class Reproduction(paper.Paper):
 
     def run_curves(self):
         frames = self.sequence.num_frames
-        self.curves["PCA", 1] = [self.run("PCA", 1, l) for l in PCA_COMPONENTS[::self.step]
-                                 if l <= frames]
+        self.curves["PCA", 1] = [self.run("PCA", 1, n) for n in PCA_COMPONENTS[::self.step]
+                                 if n <= frames]
         for method in ("LPCA", "RLPCA", "ORLPCA"):
             for clusters in CLUSTERS:
-                self.curves[method, clusters] = [self.run(method, clusters, l)
-                                                 for l in COMPONENTS[::self.step] if l <= frames]
+                self.curves[method, clusters] = [self.run(method, clusters, n)
+                                                 for n in COMPONENTS[::self.step] if n <= frames]
         for name in OURS:
             self.curves[name, 0] = [self.at_error(name, kg) for kg in TARGETS[::self.step]]
 
@@ -82,7 +82,7 @@ class Reproduction(paper.Paper):
                 low = middle
             else:
                 high = middle
-        return min((self.run(method, clusters, l) for l in (low, high)),
+        return min((self.run(method, clusters, n) for n in (low, high)),
                    key=lambda run: max(run.bpvf / bpvf, bpvf / run.bpvf))
 
     def own_rows(self):
@@ -203,8 +203,8 @@ class Reproduction(paper.Paper):
         return found
 
     def errors_of_methods(self):
-        """Figure 6 (a): errors of each frame at equal N and L, and at equal rates. Returns both, and
-        the runs of the second."""
+        """Figure 6 (a): errors of each frame at equal N and L, and at equal rates. Returns both,
+        and the runs of the second."""
         clusters, components = FRAMES_SETTING
         methods = ("LPCA", "RLPCA", "ORLPCA")
         equal = self.frames(

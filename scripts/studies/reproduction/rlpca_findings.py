@@ -32,11 +32,11 @@ def _at_settings(made):
 
     return [
         rlpca.equal_settings("local coordinates have a smaller error than world coordinates, at "
-                              "equal N and L", all_of("RLPCA"), all_of("LPCA")),
-        claims.equal_rate("local coordinates take fewer bits than world coordinates, at equal error",
-                          pairs("RLPCA", "LPCA")),
+                             "equal N and L", all_of("RLPCA"), all_of("LPCA")),
+        claims.equal_rate("local coordinates take fewer bits than world coordinates, "
+                          "at equal error", pairs("RLPCA", "LPCA")),
         rlpca.equal_settings("distributing components by rate and distortion lowers the error, at "
-                              "equal N and L", all_of("ORLPCA"), all_of("RLPCA")),
+                             "equal N and L", all_of("ORLPCA"), all_of("RLPCA")),
         claims.equal_rate("distributing components by rate and distortion takes fewer bits, at "
                           "equal error", pairs("ORLPCA", "RLPCA")),
         claims.equal_rate("RLPCA takes fewer bits than PCA, at equal error", pairs("RLPCA", "PCA")),
@@ -46,13 +46,13 @@ def _at_settings(made):
 def _of_frames(methods, settings):
     return [
         rlpca.frame_by_frame("in each frame, RLPCA has a smaller error than LPCA, N = L = 10",
-                              methods["RLPCA"], methods["LPCA"]),
+                             methods["RLPCA"], methods["LPCA"]),
         rlpca.frame_by_frame("in each frame, ORLPCA has a smaller error than RLPCA, N = L = 10",
-                              methods["ORLPCA"], methods["RLPCA"]),
+                             methods["ORLPCA"], methods["RLPCA"]),
         rlpca.frame_by_frame("in each frame, more components lower the error, N = 20, L = 20 "
-                              "against 10", settings["(20, 20)"], settings["(20, 10)"]),
+                             "against 10", settings["(20, 20)"], settings["(20, 10)"]),
         rlpca.frame_by_frame("in each frame, more clusters lower the error, L = 10, N = 20 against "
-                              "10", settings["(20, 10)"], settings["(10, 10)"]),
+                             "10", settings["(20, 10)"], settings["(10, 10)"]),
     ]
 
 
@@ -61,7 +61,8 @@ def at_equal_rates(errors, runs):
     return [rlpca.frame_by_frame(
         f"in each frame, {better} has a smaller error than {worse} at about equal rates, N = "
         f"{runs[better].clusters}, {runs[better].bpvf:.2f} and {runs[worse].bpvf:.2f} bpvf",
-        errors[better], errors[worse]) for better, worse in (("RLPCA", "LPCA"), ("ORLPCA", "RLPCA"))]
+        errors[better], errors[worse])
+        for better, worse in (("RLPCA", "LPCA"), ("ORLPCA", "RLPCA"))]
 
 
 def _ours(made):
@@ -85,7 +86,7 @@ def claims_of_paper(made, methods, settings, paths):
     return [
         *_at_settings(made), *_of_frames(methods, settings),
         rlpca.quantiser(f"the error of {BITS} bits for eigenshapes and coefficients is negligible, "
-                         f"against {FINE_BITS} bits", coarse, fine),
+                        f"against {FINE_BITS} bits", coarse, fine),
         rlpca.seeds("seeds take 0.01 to 1 bpvf with 12 to 16 bits", _seed_rates(made)),
         claims.counted("vertices vary less in local coordinates (RMS distance from their mean "
                        "position)", sum(steadier), len(steadier)),
@@ -98,8 +99,8 @@ def against_published(made, rows):
     """Sentences. rows: of table 1 for this sequence (Reproduction.table)."""
     best = {method: [run for n in COUNTS for run in made.curves[method, n]]
             for method in ("RLPCA", "ORLPCA")}
-    items = [claims.at_published_errors(f"our {method}, with the best of N = 10, 20, 30, takes fewer "
-                                        f"bits than the published {theirs}, at its error",
+    items = [claims.at_published_errors(f"our {method}, with the best of N = 10, 20, 30, takes "
+                                        f"fewer bits than the published {theirs}, at its error",
                                         best[method], points)
              for method in ("RLPCA", "ORLPCA")
              for theirs, points in (("RLPCA", [(r.kg, r.bpvf) for r, *_ in rows]),

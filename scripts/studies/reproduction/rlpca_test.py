@@ -75,7 +75,8 @@ class Claims(unittest.TestCase):
             better = runs(*((l, bpvf, kg) for (l, bpvf, _), kg in zip(self.WORSE, kgs)))
             self.assertTrue(claims.equal_settings("x", better, worse).startswith(words),
                             claims.equal_settings("x", better, worse))
-        self.assertIn("Not tested", claims.equal_settings("x", runs(*self.WORSE, clusters=20), worse))
+        self.assertIn("Not tested",
+                      claims.equal_settings("x", runs(*self.WORSE, clusters=20), worse))
 
     def test_frames(self):
         self.assertEqual(claims.frame_by_frame("x", [1, 1, 1], [2, 2, 1]),
@@ -95,8 +96,8 @@ class Claims(unittest.TestCase):
     def test_best_count(self):
         few, many = runs((2, 1.0, 2.0), (4, 2.0, 1.0)), runs((2, 2.0, 2.0), (4, 3.0, 1.0))
         self.assertEqual(claims.best_count({10: few, 20: many}),
-                         "Of 2 errors that all numbers of clusters reach, fewest bits: N = 10 at 2, "
-                         "N = 20 at 0.")
+                         "Of 2 errors that all numbers of clusters reach, fewest bits: N = 10 at "
+                         "2, N = 20 at 0.")
 
     def test_published(self):
         row = published.TABLE[3]
@@ -185,6 +186,7 @@ class SmallRun(Reproduced):
     def norm(self):
         """Both norms, from the point cache."""
         frames = [list(zip(*[iter(frame)] * 3)) for frame in self.frames]
+
         def spread(points):
             mean = [sum(axis) / len(points) for axis in zip(*points)]
             return sum(math.dist(p, mean) ** 2 for p in points)
@@ -203,8 +205,9 @@ class SmallRun(Reproduced):
         self.assertIn("nowhere.obj", self.reproduce("rlpca", "nowhere.obj", code=1).stderr)
         self.reproduce("--slow", code=64)
         done = self.reproduce(tools=self.folder, code=1)
-        self.assertEqual(done.stderr, f"reproduce: {self.folder} has no rlpcenc, rlpcdec, rlpcinfo, "
-                                      "rlpccmp, plot_svg; leave out --bin to have them built\n")
+        self.assertEqual(done.stderr,
+                         f"reproduce: {self.folder} has no rlpcenc, rlpcdec, rlpcinfo, "
+                         "rlpccmp, plot_svg; leave out --bin to have them built\n")
 
     def test_programs_that_are_not_built_are_named(self):
         some, build = self.folder / "bin", self.folder / "CMakeCache.txt"

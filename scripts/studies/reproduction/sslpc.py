@@ -52,8 +52,8 @@ FLAT_NOTE = (
     f"{FLAT}: prediction from three neighbours in space and the frame before, near Dynapack; not "
     "scalable.")
 UNKNOWN_NOTE = (
-    "The paper has no figures of this sequence: the number of layers, the error called lossless and "
-    "the one above which gains are stated are those of its cow.")
+    "The paper has no figures of this sequence: the number of layers, the error called lossless "
+    "and the one above which gains are stated are those of its cow.")
 
 
 class Reproduction(paper.Paper):
@@ -100,11 +100,11 @@ class Reproduction(paper.Paper):
         ours = [b - a for a, b in zip([0, *totals], totals)]
         columns = [published.CHICKEN.layers, published.COW.layers, ours]
         rows = []
-        for l in range(1, max(map(len, columns)) + 1):
-            row = [str(l)]
+        for layer in range(1, max(map(len, columns)) + 1):
+            row = [str(layer)]
             for layers in columns:
-                growth = published.growth(layers)[-l] if l <= len(layers) else None
-                row += [str(layers[-l]) if l <= len(layers) else "",
+                growth = published.growth(layers)[-layer] if layer <= len(layers) else None
+                row += [str(layers[-layer]) if layer <= len(layers) else "",
                         f"{100 * growth:.1f} %" if growth else ""]
             rows.append(row)
         rows.append(["all", *(x for layers in columns for x in (str(sum(layers)), ""))])

@@ -23,7 +23,7 @@ class Decomposition:
 
 def growth(layers):
     """Vertices of each layer against all below it; the base has none."""
-    return [None, *(size / sum(layers[:l + 1]) for l, size in enumerate(layers[1:]))]
+    return [None, *(size / sum(layers[:i + 1]) for i, size in enumerate(layers[1:]))]
 
 
 CHICKEN = Decomposition(models.CHICKEN, (318, 103, 166, 221, 299, 442, 600, 881), 0.02, 0.08)

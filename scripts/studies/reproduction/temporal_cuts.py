@@ -98,6 +98,7 @@ class TemporalCuts:
         target = self.bench.target(kg)
         one = self._size(self.bench, target, pattern(PERIOD))
         layered = [*self.settings, *target, *pattern(PERIOD), "--temporal-layers", LAYERS]
+
         def use(stream, order, _):
             return stream.stat().st_size, [self._cut(stream, order, layers, kept[layers - 1])
                                            for layers in range(1, LAYERS)]

@@ -8,8 +8,8 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import tuned  # noqa: E402
-import worth  # noqa: E402
+import tuned
+import worth
 
 TEXT = """#include <cstdint>
 namespace rlpc {
@@ -34,7 +34,8 @@ double f() {
 
 class Declarations(unittest.TestCase):
     def setUp(self):
-        self.found = {c.name: c for c in tuned.declarations("encoder/codec/spans/some_file.h", TEXT)}
+        self.found = {c.name: c
+                      for c in tuned.declarations("encoder/codec/spans/some_file.h", TEXT)}
 
     def test_each_says_what_it_is(self):
         tags = {name: c.tag for name, c in self.found.items()}

@@ -153,8 +153,8 @@ def measure(encoder, cases, constants, common, say):
     """{id: {column: (bytes, seconds) as parts of the base}}; None for the same bytes. common: what
     is overridden in all encodings."""
     count = len(cases)
-    both = encoder.run_all([(case, common) for case in cases] +
-                           [(case.with_target(1.06 * case.target), common) for case in cases])
+    both = encoder.run_all([(case, common) for case in cases]
+                           + [(case.with_target(1.06 * case.target), common) for case in cases])
     base = both[:count]
     slopes = [slope(b, o) for b, o in zip(base, both[count:])]
     targets = [case.target for case in cases]
@@ -183,7 +183,9 @@ def _cell(entry):
 
 
 def markdown(constants, tables):
-    """The rows of all constants. tables: {id: {"with": what they were measured with, column: cell}}."""
+    """The rows of all constants.
+
+    tables: {id: {"with": what they were measured with, column: cell}}."""
     lines = ["| constant | value | off | half | double | with | what it decides |",
              "|---|---|---|---|---|---|---|"]
     for c in constants:

@@ -6,8 +6,8 @@ function isNode() {
   return !globalThis.document && typeof globalThis.process?.getBuiltinModule === "function";
 }
 
-/** Returns the URL of an address, relative to the page or the worker; in node, of a path relative to
- * the working directory. */
+/** Returns the URL of an address, relative to the page or the worker; in node, of a path relative
+ * to the working directory. */
 export function urlOf(address) {
   if (address instanceof URL) return address;
   if (isNode() && !kScheme.test(address)) {

@@ -13,8 +13,8 @@ const kComma = 0x2c;
 const kOpening = new Set([0x5b, 0x7b]); // [ {
 const kClosing = new Set([0x5d, 0x7d]);
 
-/** Returns an upper bound of the memory of a text as objects, and their nesting depth. The text need
- * not be valid. Cost: linear in the text. */
+/** Returns an upper bound of the memory of a text as objects, and their nesting depth. The text
+ * need not be valid. Cost: linear in the text. */
 export function measureJson(text) {
   let [values, depth, deepest, isString] = [1, 0, 0, false];
   for (let i = 0; i < text.length; ++i) {

@@ -58,8 +58,8 @@ export class FrameMix {
   }
 }
 
-/** Computes positions or normals of a mix. places: the vertex of the frames for each vertex of `out`,
- * or undefined. A single frame is copied exactly. */
+/** Computes positions or normals of a mix. places: the vertex of the frames for each vertex of
+ * `out`, or undefined. A single frame is copied exactly. */
 export function blend(out, { frames, weights, count }, name, places) {
   const first = frames[0][name];
   if (count === 1) {
@@ -143,7 +143,9 @@ function makeUnits(out, instead, places) {
     const y = out[i + 1];
     const z = out[i + 2];
     setUnit(out, i, x, y, z);
-    if (x * x + y * y + z * z <= kSmallest) copyVector(out, i, instead, places ? 3 * places[i / 3] : i);
+    if (x * x + y * y + z * z <= kSmallest) {
+      copyVector(out, i, instead, places ? 3 * places[i / 3] : i);
+    }
   }
 }
 
@@ -160,8 +162,8 @@ function copyVector(out, at, from, place) {
   out[at + 2] = from[place + 2];
 }
 
-/** Computes the box of a mix by the same sums as positions, with the same rounding, so that it holds
- * every position. side: "min" or "max"; out: an array of three numbers. */
+/** Computes the box of a mix by the same sums as positions, with the same rounding, so that it
+ * holds every position. side: "min" or "max"; out: an array of three numbers. */
 export function blendBounds(out, { frames, weights, count }, side) {
   for (let c = 0; c < 3; ++c) {
     if (count === 1) {

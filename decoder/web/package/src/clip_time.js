@@ -1,7 +1,7 @@
-// Clip time (7.3 and 7.15 of the specification). Frame k of a clip is due k / frameRate seconds after
-// its start, like keys of glTF: a clip of n frames lasts n - 1 intervals, with the first pose at its
-// start and the last one at its end. When a clip repeats, its end is the start of the next pass. A
-// loop whose last pose equals its first thus never pauses.
+// Clip time (7.3 and 7.15 of the specification). Frame k of a clip is due k / frameRate seconds
+// after its start, like keys of glTF: a clip of n frames lasts n - 1 intervals, with the first pose
+// at its start and the last one at its end. When a clip repeats, its end is the start of the next
+// pass. A loop whose last pose equals its first thus never pauses.
 //
 // Times here are in intervals, from one frame to the next; loop is "repeat", "once" or "pingpong".
 // Times within kExact of a frame, or of the middle between two frames, are rounded to it.
@@ -37,14 +37,14 @@ export function nearestFrame(place) {
   return Math.floor(place + 0.5 + kExact);
 }
 
-/** Returns the time at which the frame of a step is exact, in intervals. With "repeat", the last frame
- * of a pass has the time of the first frame of the next. */
+/** Returns the time at which the frame of a step is exact, in intervals. With "repeat", the last
+ * frame of a pass has the time of the first frame of the next. */
 export function timeOfStep(step, frames, loop) {
   return loop === "repeat" ? step - Math.floor(step / frames) : step;
 }
 
-/** Returns the time at which the frame of a step becomes the nearest, in intervals. Steps count frames
- * as they are shown: all of them in each pass of "repeat"; back and forth, each end once, in
+/** Returns the time at which the frame of a step becomes the nearest, in intervals. Steps count
+ * frames as they are shown: all of them in each pass of "repeat"; back and forth, each end once, in
  * "pingpong". */
 export function startOfStep(step, frames, loop) {
   const before = 0.5 + kExact;

@@ -1,7 +1,7 @@
-// Attributes of coarse meshes. The vertices of a coarse mesh are vertices of the whole mesh, which have
-// one drawn vertex or, at a seam, one per side. The corners of a coarse triangle take the drawn
-// vertices of one side; where it has corners on both, texture coordinates of one side are continued to
-// the other.
+// Attributes of coarse meshes. The vertices of a coarse mesh are vertices of the whole mesh, which
+// have one drawn vertex or, at a seam, one per side. The corners of a coarse triangle take the
+// drawn vertices of one side; where it has corners on both, texture coordinates of one side are
+// continued to the other.
 import { mapped, Unfolding } from "./unfolding.js";
 
 /** Returns the first place of each number below `count` in an ascending list, and the end. */
@@ -38,7 +38,8 @@ class Corners {
     this.copies = starts(drawn.vertices, numVertices); // [vertex of the stream] first drawn vertex
     this.around = around;
     this.numDrawn = drawn.vertices.length;
-    this.further = []; // copies: { drawn, uvs }: uvs by set, or undefined: those of the drawn vertex
+    // Copies, { drawn, uvs }: uvs by set, or undefined: those of the drawn vertex.
+    this.further = [];
     this.numbers = new Map(); // numbers of the copies, by their contents
   }
 
@@ -76,7 +77,8 @@ class Corners {
     numbers.forEach((number, i) => {
       const drawn = this.drawnOf(number);
       const uv = index < 0 ? undefined : this.further[number - this.numDrawn]?.uvs[index];
-      picked.set(uv ?? values.subarray(components * drawn, components * (drawn + 1)), components * i);
+      const value = uv ?? values.subarray(components * drawn, components * (drawn + 1));
+      picked.set(value, components * i);
     });
     return { name, components, values: picked };
   }
@@ -98,14 +100,16 @@ function materialsOf(corners, around, materials) {
       }
     }
     let best;
-    for (const [number, sum] of votes) if (best === undefined || sum > votes.get(best)) best = number;
+    for (const [number, sum] of votes) {
+      if (best === undefined || sum > votes.get(best)) best = number;
+    }
     return best ?? 0;
   });
 }
 
 /** Makes a coarse mesh with attributes. drawn, materialOf: drawn() of the whole mesh and the set
- * `material` of its attributes(); coarse: { indices, vertices }, triangles and their vertices in the
- * whole mesh. Returns
+ * `material` of its attributes(); coarse: { indices, vertices }, triangles and their vertices in
+ * the whole mesh. Returns
  *   places      the drawn vertex, in the whole mesh, of each vertex of the result
  *   vertices    its place in coarse.vertices
  *   indices     triangles of these vertices
@@ -126,7 +130,8 @@ export function coarseSurface({ drawn, materialOf }, coarse) {
   return {
     places, indices,
     vertices: indicesIn(coarse.vertices, places.map((place) => drawn.vertices[place])),
-    attributes: new Map([...drawn.attributes].map(([name, set]) => [name, corners.at(set, numbers)])),
+    attributes: new Map([...drawn.attributes].map(
+      ([name, set]) => [name, corners.at(set, numbers)])),
     materialOf: hasMaterials ? { domain: "triangle", components: 1, integers: materialsOf(
       chosen.map((number) => corners.drawnOf(number)), around, materialOf.integers) } : undefined,
   };

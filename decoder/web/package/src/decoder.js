@@ -18,7 +18,8 @@ function workerFrom(worker) {
   return worker ?? typeof Worker === "function" ? packageWorker : undefined;
 }
 
-/** Parses metadata: null if there is none; undefined if it is not JSON, which decoders do not check. */
+/** Parses metadata: null if there is none; undefined if it is not JSON, which decoders do not
+ * check. */
 function parsedMetadata(text) {
   try {
     return text === "" ? null : JSON.parse(text);

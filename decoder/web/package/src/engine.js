@@ -105,7 +105,8 @@ class OpenStream {
       } catch (missing) {
         if (!(missing instanceof MissingBytes)) throw missing;
         // A stream that arrives from its start to its end is awaited only as far as needed.
-        const [start, end] = this.source.whole ? [missing.start, missing.end] : this.widened(missing);
+        const [start, end] =
+          this.source.whole ? [missing.start, missing.end] : this.widened(missing);
         await this.source.load(start, end, signal);
       }
     }
@@ -121,8 +122,8 @@ class OpenStream {
     return [start, Math.min(Math.max(end, wanted), this.source.size)];
   }
 
-  /** Returns the end of a block of a stream without an index. Reading in order takes fewer and fewer
-   * requests. */
+  /** Returns the end of a block of a stream without an index. Reading in order takes fewer and
+   * fewer requests. */
   blockEnd(start) {
     const { start: before, bytes } = this.block;
     const follows = start >= before + bytes && start < before + 2 * bytes;

@@ -26,8 +26,8 @@ export class FrameStore {
   };
 
   /** decode(index, into, signal) returns a promise of a frame, { positions, normals, bounds };
-   * `into`: a frame whose arrays can be reused, or undefined. arrived() is called when a frame, or its
-   * error, arrives. */
+   * `into`: a frame whose arrays can be reused, or undefined. arrived() is called when a frame, or
+   * its error, arrives. */
   constructor({ decode, bytesPerFrame, maxBytes = kUsualFrameMemory, arrived = () => {} }) {
     this.#decode = decode;
     this.#capacity = Math.max(kMinFrames, Math.floor(maxBytes / Math.max(1, bytesPerFrame)));

@@ -32,7 +32,9 @@ export class HttpSource {
       const total = /\/(\d+)$/.exec(response.headers.get("content-range") ?? "")?.[1];
       const size = total === undefined ? await this.askForSize(signal) : Number(total);
       this.size = Number.isSafeInteger(size) ? size : undefined;
-      if (this.size !== undefined) return this.receive(response, 0, Math.min(kFirstBytes, this.size));
+      if (this.size !== undefined) {
+        return this.receive(response, 0, Math.min(kFirstBytes, this.size));
+      }
       await response.body?.cancel();
       return this.openWhole(await this.request(undefined, signal));
     }
@@ -43,8 +45,8 @@ export class HttpSource {
     return this.openWhole(response);
   }
 
-  /** Returns the size; undefined if unknown. Servers of other origins may hide Content-Range; some lack
-   * HEAD. */
+  /** Returns the size; undefined if unknown. Servers of other origins may hide Content-Range; some
+   * lack HEAD. */
   async askForSize(signal) {
     const response = await this.request(undefined, signal, "HEAD").catch((error) => {
       if (error.name === "AbortError") throw error;

@@ -40,8 +40,8 @@ export class LevelGeometries {
     return this.geometry;
   }
 
-  /** Returns the number of the level for a camera: the last one that does not begin farther away. The
-   * chosen level ends nearer than it begins, by its hysteresis. */
+  /** Returns the number of the level for a camera: the last one that does not begin farther away.
+   * The chosen level ends nearer than it begins, by its hysteresis. */
   numberFor({ matrixWorld: cameraMatrix, zoom = 1 }, matrixWorld, chosenLevel) {
     cameraPlace.setFromMatrixPosition(cameraMatrix);
     meshPlace.copy(this.geometry.boundingSphere.center).applyMatrix4(matrixWorld);
@@ -85,8 +85,8 @@ export class LevelGeometries {
     geometry.boundingSphere.copy(from.boundingSphere);
   }
 
-  /** Frees attributes that geometries of other meshes do not share. Renderers free the attributes of a
-   * geometry with it; those of the stream live until its last mesh ends. */
+  /** Frees attributes that geometries of other meshes do not share. Renderers free the attributes
+   * of a geometry with it; those of the stream live until its last mesh ends. */
   dispose() {
     const isLast = this.#stream.meshes.size === 1;
     for (const [level, geometry] of this.#geometries) {

@@ -10,8 +10,8 @@ export class Link {
     this.numUsers = 0;
   }
 
-  /** Connects to an engine in the worker that makeWorker() returns; without it, on the thread of the
-   * caller. */
+  /** Connects to an engine in the worker that makeWorker() returns; without it, on the thread of
+   * the caller. */
   static async create(makeWorker) {
     const link = new Link();
     if (makeWorker) {

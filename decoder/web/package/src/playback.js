@@ -5,7 +5,8 @@
 // backward playback need no special cases; clip_time.js defines when a step begins.
 //
 // If it interpolates, a step begins where its frame is exact; until the next one begins,
-// `following` and `fraction` define the picture. Time then waits at a frame until the next is ready.
+// `following` and `fraction` define the picture. Time then waits at a frame until the next is
+// ready.
 import {
   clipSeconds, exactPlace, kExact, nearestFrame, placeAt, startOfStep, timeOfStep,
 } from "./clip_time.js";
@@ -19,8 +20,8 @@ export const kLoops = ["repeat", "once", "pingpong"];
 
 export class Playback {
   /** request(index, signal) returns a promise of a frame; peek(index) the frame, if it is ready;
-   * discard(frame) takes frames that are no longer needed; failed(error, index) is called for frames
-   * that fail, without which playback continues. */
+   * discard(frame) takes frames that are no longer needed; failed(error, index) is called for
+   * frames that fail, without which playback continues. */
   constructor({ frames, frameRate, ahead = 4, interpolates = false, request,
     peek = () => undefined, discard = () => {}, failed = () => {} }) {
     Object.assign(this, { frames, frameRate, ahead, interpolates, request, peek, discard, failed });
@@ -80,7 +81,7 @@ export class Playback {
     const { count, current, loop, time } = this;
     // The end of a pass is the start of the next; the frame decides between them.
     const place = loop === "repeat" ? time - Math.floor(current / count) * (count - 1)
-                                    : placeAt(time, count, loop);
+      : placeAt(time, count, loop);
     return (this.speed < 0 ? count - 1 - place : place) / this.frameRate;
   }
 
@@ -230,7 +231,9 @@ export class Playback {
   /** Advances time; not for negative seconds. Returns { index, frame } to show now, if it is new;
    * without a frame if it cannot be decoded. */
   tick(seconds) {
-    if (!Number.isFinite(seconds)) throw new RangeError("the time that has passed is a finite number");
+    if (!Number.isFinite(seconds)) {
+      throw new RangeError("the time that has passed is a finite number");
+    }
     let shown;
     if (!this.isShown) {
       if (!this.playing && !this.isReady) return undefined;
@@ -263,8 +266,8 @@ export class Playback {
     return shown;
   }
 
-  /** Returns the intervals to play in `seconds` seconds. After a long pause, as of a hidden page, only
-   * the last pass is played. */
+  /** Returns the intervals to play in `seconds` seconds. After a long pause, as of a hidden page,
+   * only the last pass is played. */
   intervalsIn(seconds) {
     const { count, frameRate, loop, speed } = this;
     const intervals = Math.min(seconds * frameRate * Math.abs(speed), Number.MAX_SAFE_INTEGER);

@@ -10,7 +10,8 @@ import { PoseMix } from "./pose_mix.js";
 import { ShownStream } from "./shown_stream.js";
 import { dress, loadLook, usualMaterial } from "./three_look.js";
 
-const kLoopNames = new Map([[LoopRepeat, "repeat"], [LoopOnce, "once"], [LoopPingPong, "pingpong"]]);
+const kLoopNames =
+  new Map([[LoopRepeat, "repeat"], [LoopOnce, "once"], [LoopPingPong, "pingpong"]]);
 
 function givenMaterial(material, decoder) {
   return typeof material === "function" ? material(decoder) : material;
@@ -194,7 +195,8 @@ export class RLPCMesh extends Mesh {
     return this;
   }
 
-  /** Returns a clip, given by name (the first with it) or as a clip of another mesh of the stream. */
+  /** Returns a clip, given by name (the first with it) or as a clip of another mesh of the stream.
+   * */
   #found(wanted) {
     if (wanted === null || this.clips.includes(wanted)) return wanted;
     const clip = this.clips.find(({ name, firstFrame, frames }) => name === wanted ||

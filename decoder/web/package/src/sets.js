@@ -6,8 +6,8 @@ export function hasNormals(sets) {
 }
 
 /** Sorts triangles by material: { indices, groups }, groups with start, count and material.
- * materialOf: the set `material`, or undefined if all have the first. Numbers from `most` on mean no
- * material, and become `most`. */
+ * materialOf: the set `material`, or undefined if all have the first. Numbers from `most` on mean
+ * no material, and become `most`. */
 export function byMaterial(indices, materialOf, most) {
   const count = indices.length / 3;
   const hasMaterials = materialOf?.domain === "triangle" && materialOf.components === 1;

@@ -156,7 +156,7 @@ export class ShownStream {
 
   /** Makes an animation for each clip, or for the whole sequence without clips. */
   #animate() {
-    const { clips, info } = this.decoder;
+    const { clips } = this.decoder;
     this.slots = []; // { first, count } of each animation
     this.animations = clips.map((clip) => this.animation(clip));
     if (clips.length === 0) this.animations.push(this.animation(null));

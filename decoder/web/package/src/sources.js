@@ -1,5 +1,5 @@
-// Sources of the bytes of a stream. Each has its size after open(), and puts bytes into `ranges` with
-// load(start, end, signal), which waits for them.
+// Sources of the bytes of a stream. Each has its size after open(), and puts bytes into `ranges`
+// with load(start, end, signal), which waits for them.
 import { isFile, urlOf } from "./address.js";
 import { ByteRanges } from "./byte_ranges.js";
 import { RlpcError } from "./error.js";

@@ -108,15 +108,16 @@ function withoutTextures(glb) {
     (key, value) => (key.endsWith("Texture") ? undefined : value));
 }
 
-/** Returns the name of an attribute in three.js: uv, uv1, uv2, uv3, color; undefined if it has none. */
+/** Returns the name of an attribute in three.js: uv, uv1, uv2, uv3, color; undefined if it has
+ * none. */
 function nameInThree({ name, components }) {
   const uv = /^uv([0-3])$/.exec(name)?.[1];
   if (uv && components === 2) return uv === "0" ? "uv" : `uv${uv}`;
   return name === "colour0" && components >= 3 ? "color" : undefined;
 }
 
-/** Sets the attributes of a geometry. equalUvs: of the look; equal sets are one attribute with several
- * names. */
+/** Sets the attributes of a geometry. equalUvs: of the look; equal sets are one attribute with
+ * several names. */
 export function setAttributes(geometry, { attributes }, equalUvs) {
   for (const set of attributes.values()) {
     const name = nameInThree(set);

@@ -1,7 +1,7 @@
-// Texture coordinates across seams. Each side of a seam has its own; a triangle of a coarse mesh may
-// have corners on both. From one of its corners, this walks over the triangles of the whole mesh to
-// the others, and continues the texture coordinates of that corner: where the walk crosses a seam, a
-// similarity aligns the texture of the far side with that of the near side.
+// Texture coordinates across seams. Each side of a seam has its own; a triangle of a coarse mesh
+// may have corners on both. From one of its corners, this walks over the triangles of the whole
+// mesh to the others, and continues the texture coordinates of that corner: where the walk crosses
+// a seam, a similarity aligns the texture of the far side with that of the near side.
 
 const kCrossingSteps = 1; // additional cost of a step across a seam
 const kMostSteps = 1 << 12; // triangles that one walk visits
@@ -25,7 +25,8 @@ function compose(first, second) {
     isMirror: first.isMirror !== second.isMirror };
 }
 
-/** Returns the similarity that maps an edge of the far side to that of the near side: [u, v] each. */
+/** Returns the similarity that maps an edge of the far side to that of the near side: [u, v] each.
+ * */
 function similarity(near, far, isMirror) {
   const [[a, b], [c, d]] = [near, far].map(([from, to]) => [to[0] - from[0], to[1] - from[1]]);
   const e = isMirror ? -d : d;
@@ -38,7 +39,8 @@ function similarity(near, far, isMirror) {
 }
 
 export class Unfolding {
-  /** { vertices, indices }: drawn() of a decoder; uvs: values of its sets of texture coordinates. */
+  /** { vertices, indices }: drawn() of a decoder; uvs: values of its sets of texture coordinates.
+   * */
   constructor({ vertices, indices }, uvs) {
     Object.assign(this, { vertices, indices, uvs });
     this.opposite = this.#opposites();
@@ -46,8 +48,8 @@ export class Unfolding {
     this.numWalks = 0;
   }
 
-  /** Returns, for each corner, the corner at which the same edge begins in the neighbouring triangle;
-   * -1: none. */
+  /** Returns, for each corner, the corner at which the same edge begins in the neighbouring
+   * triangle; -1: none. */
   #opposites() {
     const { indices, vertices } = this;
     const opposite = new Int32Array(indices.length).fill(-1);
@@ -72,9 +74,9 @@ export class Unfolding {
     return corner % 3 === 2 ? corner - 2 : corner + 1;
   }
 
-  /** Walks from triangles to two vertices of the stream. Returns { steps, ends }: ends has, for each
-   * vertex, the drawn vertex, and a map per set that continues texture coordinates from the start;
-   * undefined if the walk is too long. */
+  /** Walks from triangles to two vertices of the stream. Returns { steps, ends }: ends has, for
+   * each vertex, the drawn vertex, and a map per set that continues texture coordinates from the
+   * start; undefined if the walk is too long. */
   walk(triangles, targets) {
     const walk = ++this.numWalks;
     const buckets = [triangles.map((triangle) => [triangle, this.uvs.map(() => kIdentity)])];

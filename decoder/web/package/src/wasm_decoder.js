@@ -124,8 +124,8 @@ class WasmStream {
     this.check("stream_finish");
   }
 
-  /** Returns an array of the frame that was decoded last. places: vertices to return, or undefined for
-   * all; into: an array to fill, or undefined. */
+  /** Returns an array of the frame that was decoded last. places: vertices to return, or undefined
+   * for all; into: an array to fill, or undefined. */
   ofFrame(name, numVertices, places, into) {
     const [Type, source] = kFrameArrays[name];
     if (!places) return this.copy(Type, source, 3 * numVertices, into);

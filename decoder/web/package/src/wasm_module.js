@@ -23,8 +23,8 @@ async function compile(url) {
     : WebAssembly.compile(await response.arrayBuffer());
 }
 
-/** Returns the compiled module. wasm: a module, its bytes, its URL, or undefined for the file of this
- * package. */
+/** Returns the compiled module. wasm: a module, its bytes, its URL, or undefined for the file of
+ * this package. */
 export function compiledModule(wasm = new URL("./rlpc.wasm", import.meta.url)) {
   if (wasm instanceof WebAssembly.Module) return wasm;
   if (wasm instanceof ArrayBuffer || ArrayBuffer.isView(wasm)) return WebAssembly.compile(wasm);

@@ -1,8 +1,8 @@
 // node clocks.mjs MODULES PACKAGE STREAM CASES.json
 //
 // Shows clips at times in every way of the package. A case: { clip (an index, -1: the whole
-// sequence), seconds, repeats, speed }. Writes JSON: for each case, by way, { frame, place, xyz }, with
-// frames counted from the start of the sequence, and the first coordinates of the mesh.
+// sequence), seconds, repeats, speed }. Writes JSON: for each case, by way, { frame, place, xyz },
+// with frames counted from the start of the sequence, and the first coordinates of the mesh.
 import fs from "node:fs";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
@@ -24,7 +24,8 @@ const animationOfAll = mesh.makeAnimation(null);
 const wholeSequence = { firstFrame: 0, frames: decoder.info.frames };
 
 function shown(place) {
-  return { frame: mesh.frame, place, xyz: [...mesh.geometry.attributes.position.array.slice(0, 12)] };
+  const { array } = mesh.geometry.attributes.position;
+  return { frame: mesh.frame, place, xyz: [...array.slice(0, 12)] };
 }
 
 /** Applies the rule directly. */

@@ -17,8 +17,8 @@ function gridTriangles(rows, columns, vertex) {
   return Uint32Array.from(triangles);
 }
 
-/** Makes a closed tube: u jumps from 1 to 0 at a seam. Drawn vertices ascend by vertex, with those of
- * the seam twice. */
+/** Makes a closed tube: u jumps from 1 to 0 at a seam. Drawn vertices ascend by vertex, with those
+ * of the seam twice. */
 function tube(rows, columns) {
   const vertices = [];
   const uv = [];
@@ -68,7 +68,8 @@ test("NoTriangleCrossesASeam", () => {
         assert.equal(vertices[corner], coarse.indices[t + k]);
         assert.equal(drawn.vertices[places[corner]], coarse.vertices[vertices[corner]]);
         for (let c = 0; c < 2; ++c) {
-          assert.equal(uv[2 * corner + c], drawn.attributes.get("uv0").values[2 * places[corner] + c]);
+          const { values } = drawn.attributes.get("uv0");
+          assert.equal(uv[2 * corner + c], values[2 * places[corner] + c]);
         }
       }
     }
@@ -100,7 +101,8 @@ test("TextureCoordinatesGoOnAcrossASeamThatIsNotKept", () => {
         const vertex = drawn.vertices[places[indices[t + k]]];
         assert.equal(vertex, coarse.vertices[coarse.indices[t + k]]);
         assert.ok(turnsApart(us[k], vertex % columns, columns) < 1e-5);
-        assert.ok(Math.abs(uv[2 * indices[t + k] + 1] - Math.floor(vertex / columns) / rows) < 1e-5);
+        const wanted = Math.floor(vertex / columns) / rows;
+        assert.ok(Math.abs(uv[2 * indices[t + k] + 1] - wanted) < 1e-5);
       }
     }
   }
@@ -128,8 +130,9 @@ test("ATurnedAndMirroredSideIsContinued", () => {
     }
     const triangles = [0, 1].flatMap((side) => [...gridTriangles(size, half, (r, c) =>
       drawnOf.get(`${r} ${c + half * side} ${side}`))]);
+    const uv0 = { name: "uv0", components: 2, values: Float32Array.from(uv) };
     const drawn = { vertices: Uint32Array.from(vertices), indices: Uint32Array.from(triangles),
-      attributes: new Map([["uv0", { name: "uv0", components: 2, values: Float32Array.from(uv) }]]) };
+      attributes: new Map([["uv0", uv0]]) };
     // A triangle with two corners on the left, and one on the right.
     const corners = [[1, 1], [3, 6], [5, 2]].map(([r, c]) => r * (size + 1) + c);
     const coarse = { vertices: Uint32Array.from(corners).sort(), indices: Uint32Array.of(0, 1, 2) };

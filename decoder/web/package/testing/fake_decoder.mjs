@@ -1,4 +1,5 @@
-// Decoder for tests of RLPCMesh: frames are functions of their index, and as late as the test wants.
+// Decoder for tests of RLPCMesh: frames are functions of their index, and as late as the test
+// wants.
 
 /** Makes a generator of numbers from 0 to 1. */
 export function random(seed) {

@@ -46,7 +46,8 @@ test("WithoutASizeTheWholeStreamIsLoaded", async () => {
   // Ranges, but neither Content-Range nor HEAD.
   const methods = serve((method, range) => {
     if (method === "HEAD") return new Response(null, { status: 405 });
-    return range ? new Response(kStream.slice(0, 16384), { status: 206 }) : new Response(inPieces());
+    return range ? new Response(kStream.slice(0, 16384), { status: 206 })
+      : new Response(inPieces());
   });
   const whole = source();
   await whole.open();
@@ -94,7 +95,8 @@ test("AStreamThatIsShorterThanToldIsAnError", async () => {
   serve(() => new Response(inPieces(), { headers: { "content-length": "40001" } }));
   const whole = source();
   await whole.open();
-  await assert.rejects(whole.load(40000, 40001), { kind: "network", message: /40000 bytes instead/ });
+  await assert.rejects(whole.load(40000, 40001),
+    { kind: "network", message: /40000 bytes instead/ });
 });
 
 /** Makes a body without end. sent: see inPieces(). */
@@ -130,14 +132,16 @@ test("ALaterRangeWithoutAnEndIsCancelled", async () => {
     : new Response(endless(sent), { status: 206, headers: rangeOf(20000, 45000) })));
   const ranged = source(1e6);
   await ranged.open();
-  await assert.rejects(ranged.load(20000, 45000), { kind: "network", message: /more than the 25000/ });
+  await assert.rejects(ranged.load(20000, 45000),
+    { kind: "network", message: /more than the 25000/ });
   assert.equal(sent.isCancelled, true);
   assert.ok(sent.pieces <= 4, `${sent.pieces} pieces were loaded`);
 });
 
 test("ARangeFromAnotherPlaceIsAnError", async () => {
   serve(() => new Response(kStream.slice(1, 16385), { status: 206, headers: rangeOf(1, 16385) }));
-  await assert.rejects(source().open(), { kind: "network", message: /bytes from 1 on instead of 0/ });
+  await assert.rejects(source().open(),
+    { kind: "network", message: /bytes from 1 on instead of 0/ });
 });
 
 test("AWholeStreamInPlaceOfARangeIsNotLoadedBeyondTheLimit", async () => {

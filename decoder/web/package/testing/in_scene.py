@@ -10,10 +10,10 @@ import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "player"))
-import chromium  # noqa: E402
-from player_testing import (MODULES, PLAYER, InFolder, float_frames, need_node,  # noqa: E402
+import chromium
+from player_testing import (MODULES, PLAYER, InFolder, float_frames, need_node,
                             need_player)
-from stream_server import StreamServer  # noqa: E402
+from stream_server import StreamServer
 
 
 def npm(*arguments, cwd):

@@ -1,8 +1,8 @@
 // node loops.mjs MODULES PACKAGE STREAM SOURCE.glb DECODED.glb
 //
-// Plays the clips of a stream with RLPCMesh, and those of both files with three's AnimationMixer, at
-// the same moments. Writes JSON: the durations of each clip, and the largest difference of the times
-// in it, in seconds, for each kind of loop.
+// Plays the clips of a stream with RLPCMesh, and those of both files with three's AnimationMixer,
+// at the same moments. Writes JSON: the durations of each clip, and the largest difference of the
+// times in it, in seconds, for each kind of loop.
 import fs from "node:fs";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
@@ -61,7 +61,8 @@ async function furthest(index, loop, turns) {
       const isBack = loop === THREE.LoopPingPong && Math.floor(seconds / duration) % 2 === 1;
       const off = Math.abs(mesh.time - (isBack ? duration - action.time : action.time));
       // The end of a pass is the start of the next.
-      apart = Math.max(apart, loop === THREE.LoopOnce ? off : Math.min(off, Math.abs(duration - off)));
+      apart = Math.max(
+        apart, loop === THREE.LoopOnce ? off : Math.min(off, Math.abs(duration - off)));
     }
   }
   for (const { action } of others) action.stop();

@@ -6,7 +6,8 @@ import { Box3, Vector3 } from "three";
 import { RLPCMesh } from "../src/three.js";
 import { FakeDecoder, positionsOf } from "./fake_decoder.mjs";
 
-export const kClips = [{ name: "walk", firstFrame: 0, frames: 12 }, { name: "run", firstFrame: 12, frames: 9 },
+export const kClips = [
+  { name: "walk", firstFrame: 0, frames: 12 }, { name: "run", firstFrame: 12, frames: 9 },
   { name: "still", firstFrame: 21, frames: 1 }, { name: "walk", firstFrame: 22, frames: 5 }];
 
 export async function meshOf(options = {}, meshOptions = {}) {

@@ -1,4 +1,5 @@
-// Run by package_test.py: pictures of RLPCMesh between frames, and under actions of an AnimationMixer.
+// Run by package_test.py: pictures of RLPCMesh between frames, and under actions of an
+// AnimationMixer.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 

@@ -246,7 +246,8 @@ test("PlacesAreThoseOfAnAnimationOfTheSameDuration", () => {
     const place = placeAt(seconds * frameRate, frames, loop);
     assert.ok(place >= 0 && place <= frames - 1);
     const difference = Math.abs(place - timeInClip(seconds, duration, loop) * frameRate);
-    assert.ok(difference < 1e-6 || (loop === "repeat" && difference > frames - 1 - 1e-6), `${difference}`);
+    assert.ok(difference < 1e-6 || (loop === "repeat" && difference > frames - 1 - 1e-6),
+      `${difference}`);
   }
   assert.equal(placeAt(7.5, 1, "repeat"), 0);
 });
@@ -311,7 +312,8 @@ for (const loop of ["repeat", "once", "pingpong"]) {
           playback.tick(delta);
           played += delta * Math.abs(playback.speed);
           const off = timeOff(playback, played, loop);
-          assert.ok(off < 1e-6, `${loop} ${playback.count} frames, ahead ${playback.ahead}: ${off}`);
+          const { count, ahead } = playback;
+          assert.ok(off < 1e-6, `${loop} ${count} frames, ahead ${ahead}: ${off}`);
         }
       }
     });
@@ -345,8 +347,12 @@ test("TimesAreNumbersAndDoNotGoBack", async () => {
   await settled();
   playback.tick(0);
   playback.tick(0.12);
-  for (const wrong of [NaN, Infinity, undefined]) assert.throws(() => playback.tick(wrong), RangeError);
-  for (const wrong of [NaN, Infinity, "2"]) assert.throws(() => playback.setSpeed(wrong), RangeError);
+  for (const wrong of [NaN, Infinity, undefined]) {
+    assert.throws(() => playback.tick(wrong), RangeError);
+  }
+  for (const wrong of [NaN, Infinity, "2"]) {
+    assert.throws(() => playback.setSpeed(wrong), RangeError);
+  }
   for (const wrong of [NaN, undefined]) {
     assert.throws(() => playback.seekSeconds(wrong), RangeError);
   }
@@ -367,7 +373,8 @@ test("OnlyWhatRepeatsTurns", async () => {
 });
 
 test("SeekingToATimeShowsTheNearestFrameAndKeepsTheTime", () => {
-  const playback = new Playback({ frames: 100, frameRate: 10, request: () => new Promise(() => {}) });
+  const request = () => new Promise(() => {});
+  const playback = new Playback({ frames: 100, frameRate: 10, request });
   playback.setRange(20, 11);
   for (const [seconds, frame] of [[0, 20], [0.04, 20], [0.06, 21], [0.5, 25], [1, 30]]) {
     playback.seekSeconds(seconds);

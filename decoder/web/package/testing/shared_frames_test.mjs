@@ -174,7 +174,8 @@ test("ScenesAreClonedWithTheirMeshes", async () => {
 });
 
 test("CrossfadesWithTheLeastMemoryShowNoFrameThatHasLeft", async () => {
-  const clips = [{ name: "a", firstFrame: 0, frames: 50 }, { name: "b", firstFrame: 50, frames: 50 }];
+  const clips =
+    [{ name: "a", firstFrame: 0, frames: 50 }, { name: "b", firstFrame: 50, frames: 50 }];
   const { decoder, mesh } = await meshOf({ frames: 100, clips }, { frameMemory: 1 });
   const mixer = new AnimationMixer(mesh);
   const [a, b] = mesh.animations.map((clip) => mixer.clipAction(clip).play());
