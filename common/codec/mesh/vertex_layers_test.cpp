@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <random>
 #include <set>
@@ -340,19 +339,9 @@ TEST(Layers, AgreeWithThePseudoCode) {
   EXPECT_EQ(digest(make_layers(mesh)), 2036378576U);
 }
 
-double seconds(const Mesh& mesh) {
-  const auto start = std::chrono::steady_clock::now();
-  EXPECT_EQ(base_size(make_layers(mesh)), 4U);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-TEST(Layers, TakeLinearTimeAtHubs) {
-  const double of_few = seconds(bipyramid(20'000));
-  EXPECT_LT(seconds(bipyramid(200'000)), 40 * of_few + 1);
-}
-
+// Quadratic time, 10^12 steps, would exceed the time limit of tests.
 TEST(Layers, TakeLinearTimeOnHostileMeshes) {
-  constexpr std::uint32_t kMany = 200'000;
+  constexpr std::uint32_t kMany = 1'000'000;
   Mesh book{kMany, {}};
   Mesh copies{kMany, {}};
   Mesh fan{kMany, {}};
@@ -361,6 +350,7 @@ TEST(Layers, TakeLinearTimeOnHostileMeshes) {
     copies.triangles.push_back({0, 1, 2});
     fan.triangles.push_back({0, v - 1, v});
   }
+  EXPECT_EQ(base_size(make_layers(bipyramid(kMany))), 4U);
   EXPECT_EQ(base_size(make_layers(book)), 3U);
   EXPECT_EQ(base_size(make_layers(copies)), kMany);
   EXPECT_EQ(base_size(make_layers(fan)), 3U);
