@@ -56,8 +56,8 @@ def cases_of(folder, frames):
 def find_validator(encoder):
     """The command of rlpcval, next to the encoder or on the path; or None."""
     program = pathlib.Path(sandbox.command_words(encoder)[0])
-    beside = program.with_name("rlpcval")
-    return shlex.quote(str(beside)) if beside.is_file() else shutil.which("rlpcval")
+    sibling = program.with_name("rlpcval")
+    return shlex.quote(str(sibling)) if sibling.is_file() else shutil.which("rlpcval")
 
 
 class Checker:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Time in clips, in node: RLPCMesh beside three.js with the .glb of rlpcdec and with the source,
-and beside the library in C.
+"""Time in clips, in node: RLPCMesh compared with three.js, which plays the .glb of rlpcdec and the
+source, and with the library in C.
 
   loops_test.py --bin FOLDER [Loops|Clocks]...
 

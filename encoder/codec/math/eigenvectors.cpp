@@ -96,15 +96,15 @@ std::optional<EigenPairs> single_eigenvectors(std::span<const double> matrix, st
   fix_eigen_blocking();
   const Eigen::Tridiagonalization<Square> reduced(square_of(matrix, width));
   const Eigen::VectorXd diagonal = reduced.diagonal();
-  const Eigen::VectorXd beside = reduced.subDiagonal();
+  const Eigen::VectorXd subdiagonal = reduced.subDiagonal();
   Eigen::SelfAdjointEigenSolver<Square> solver;
-  solver.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
+  solver.computeFromTridiagonal(diagonal, subdiagonal, Eigen::EigenvaluesOnly);
   EigenPairs pairs{descending_values(solver), {}};
   const std::size_t wanted = num_wanted(pairs.values, max_count, least);
   if (wanted >= width) return std::nullopt;
   if (wanted == 0) return pairs;
   const auto vectors =
-      tridiagonal_eigenvectors({diagonal.data(), width}, {beside.data(), width - 1},
+      tridiagonal_eigenvectors({diagonal.data(), width}, {subdiagonal.data(), width - 1},
                                std::span(pairs.values).first(wanted));
   if (!vectors) return std::nullopt;
   Square columns(diagonal.size(), static_cast<Eigen::Index>(wanted));

@@ -17,13 +17,13 @@ namespace {
 // identity.
 class ShiftedFactors {
  public:
-  ShiftedFactors(std::span<const double> diagonal, std::span<const double> beside, double shift,
-                 double least_pivot)
+  ShiftedFactors(std::span<const double> diagonal, std::span<const double> subdiagonal,
+                 double shift, double least_pivot)
       : rows_(diagonal.size()) {
     const std::size_t n = rows_.size();
-    Row row{diagonal[0] - shift, n > 1 ? beside[0] : 0.0, 0.0};
+    Row row{diagonal[0] - shift, n > 1 ? subdiagonal[0] : 0.0, 0.0};
     for (std::size_t i = 0; i + 1 < n; ++i) {
-      Row next{beside[i], diagonal[i + 1] - shift, i + 2 < n ? beside[i + 1] : 0.0};
+      Row next{subdiagonal[i], diagonal[i + 1] - shift, i + 2 < n ? subdiagonal[i + 1] : 0.0};
       row.exchanged = std::abs(next.pivot) > std::abs(row.pivot);
       if (row.exchanged) {
         std::swap(row.pivot, next.pivot);
@@ -158,13 +158,13 @@ std::vector<double> random_vector(std::size_t size, std::uint64_t seed) {
 }
 
 // Returns the largest magnitude of an element of (matrix - value) x.
-double residual(std::span<const double> diagonal, std::span<const double> beside, double value,
-                const std::vector<double>& x) {
+double residual(std::span<const double> diagonal, std::span<const double> subdiagonal,
+                double value, const std::vector<double>& x) {
   double worst = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     double sum = (diagonal[i] - value) * x[i];
-    if (i > 0) sum += beside[i - 1] * x[i - 1];
-    if (i + 1 < x.size()) sum += beside[i] * x[i + 1];
+    if (i > 0) sum += subdiagonal[i - 1] * x[i - 1];
+    if (i + 1 < x.size()) sum += subdiagonal[i] * x[i + 1];
     worst = std::max(worst, std::abs(sum));
   }
   return worst;
@@ -173,7 +173,7 @@ double residual(std::span<const double> diagonal, std::span<const double> beside
 }  // namespace
 
 std::optional<std::vector<std::vector<double>>> tridiagonal_eigenvectors(
-    std::span<const double> diagonal, std::span<const double> beside,
+    std::span<const double> diagonal, std::span<const double> subdiagonal,
     std::span<const double> values) {
   constexpr int kRounds = 3;
   constexpr double kConverged =
@@ -185,7 +185,7 @@ std::optional<std::vector<std::vector<double>>> tridiagonal_eigenvectors(
   const std::size_t count = values.size();
   double size = 0.0;
   for (const double x : diagonal) size = std::max(size, std::abs(x));
-  for (const double x : beside) size = std::max(size, std::abs(x));
+  for (const double x : subdiagonal) size = std::max(size, std::abs(x));
   const double rounding = std::max(size * std::numeric_limits<double>::epsilon(),
                                    std::numeric_limits<double>::min());
   std::vector<double> shifts;
@@ -198,7 +198,7 @@ std::optional<std::vector<std::vector<double>>> tridiagonal_eigenvectors(
   std::vector<std::uint8_t> failed(count, 0);
   for_ranges(count, kTogether, [&](std::size_t l, std::size_t end) {
     for (; l < end; ++l) {
-      const ShiftedFactors factors(diagonal, beside, shifts[l], rounding);
+      const ShiftedFactors factors(diagonal, subdiagonal, shifts[l], rounding);
       vectors[l] = random_vector(n, l);
       for (int round = 0; round < kRounds && failed[l] == 0; ++round) {
         factors.solve(vectors[l]);
@@ -211,7 +211,7 @@ std::optional<std::vector<std::vector<double>>> tridiagonal_eigenvectors(
   if (!orthonormalise(columns, count)) return std::nullopt;
   for (std::size_t l = 0; l < count; ++l) {
     for (std::size_t i = 0; i < n; ++i) vectors[l][i] = columns[i * count + l];
-    if (residual(diagonal, beside, values[l], vectors[l]) > kConverged * size) {
+    if (residual(diagonal, subdiagonal, values[l], vectors[l]) > kConverged * size) {
       return std::nullopt;
     }
   }

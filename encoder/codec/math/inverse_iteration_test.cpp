@@ -28,12 +28,12 @@ TEST(TridiagonalEigenvectors, AreSinesForTheSecondDifference) {
   constexpr std::size_t kWidth = 120;
   constexpr double kPi = std::numbers::pi;
   const std::vector<double> diagonal(kWidth, 2.0);
-  const std::vector<double> beside(kWidth - 1, -1.0);
+  const std::vector<double> subdiagonal(kWidth - 1, -1.0);
   std::vector<double> values;
   for (std::size_t k = kWidth; k > kWidth / 2; --k) {
     values.push_back(2.0 - 2.0 * std::cos(kPi * static_cast<double>(k) / (kWidth + 1)));
   }
-  const auto vectors = tridiagonal_eigenvectors(diagonal, beside, values);
+  const auto vectors = tridiagonal_eigenvectors(diagonal, subdiagonal, values);
   ASSERT_TRUE(vectors.has_value());
   ASSERT_EQ(vectors->size(), values.size());
   expect_orthonormal(*vectors);
@@ -52,15 +52,15 @@ TEST(TridiagonalEigenvectors, AreOrthogonalForEqualValues) {
   // Decoupled blocks, each with the values 3 and 1.
   constexpr std::size_t kBlocks = 20;
   std::vector<double> diagonal;
-  std::vector<double> beside;
+  std::vector<double> subdiagonal;
   for (std::size_t b = 0; b < kBlocks; ++b) {
     diagonal.insert(diagonal.end(), {2.0, 2.0});
-    beside.insert(beside.end(), {1.0, 0.0});
+    subdiagonal.insert(subdiagonal.end(), {1.0, 0.0});
   }
-  beside.pop_back();
+  subdiagonal.pop_back();
   std::vector<double> values(kBlocks, 3.0);
   values.insert(values.end(), kBlocks, 1.0);
-  const auto vectors = tridiagonal_eigenvectors(diagonal, beside, values);
+  const auto vectors = tridiagonal_eigenvectors(diagonal, subdiagonal, values);
   ASSERT_TRUE(vectors.has_value());
   expect_orthonormal(*vectors);
   for (std::size_t l = 0; l < values.size(); ++l) {
@@ -80,9 +80,9 @@ TEST(TridiagonalEigenvectors, IsOneForASingleElement) {
 
 TEST(TridiagonalEigenvectors, AreNoneForANumberThatIsNoEigenvalue) {
   const std::vector<double> diagonal{1.0, 2.0, 3.0};
-  const std::vector<double> beside{0.5, 0.5};
+  const std::vector<double> subdiagonal{0.5, 0.5};
   EXPECT_FALSE(
-      tridiagonal_eigenvectors(diagonal, beside, std::vector<double>{2.5}).has_value());
+      tridiagonal_eigenvectors(diagonal, subdiagonal, std::vector<double>{2.5}).has_value());
 }
 
 }  // namespace

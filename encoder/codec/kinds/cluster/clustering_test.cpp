@@ -247,9 +247,9 @@ TEST(MotionClusters, SeedsOfFewerClustersAreAPrefix) {
   MotionClusters once(scene.frames, scene.triangles, kPositionBits);
   const std::vector<Seed> eight = once.clusters(8).seeds;
   for (const std::uint32_t count : {1U, 3U, 8U, 2U}) {
-    MotionClusters afresh(scene.frames, scene.triangles, kPositionBits);
+    MotionClusters other(scene.frames, scene.triangles, kPositionBits);
     const Clustering a = once.clusters(count);  // one object handles all counts
-    const Clustering b = afresh.clusters(count);
+    const Clustering b = other.clusters(count);
     EXPECT_EQ(a.seeds, b.seeds);
     EXPECT_EQ(a.cluster_of_vertex, b.cluster_of_vertex);
     EXPECT_EQ(a.seeds, (std::vector<Seed>{eight.begin(), eight.begin() + count}));

@@ -105,10 +105,10 @@ TEST(PartitionClusters, GiveTheSamePartsAgain) {
   const Sheets scene = sheets(2, false);
   PartitionClusters once(PartitionMethod::kKway, scene.frames, scene.triangles, kPositionBits);
   for (const std::uint32_t count : {5U, 2U, 5U}) {
-    PartitionClusters afresh(PartitionMethod::kKway, scene.frames, scene.triangles,
-                             kPositionBits);
+    PartitionClusters other(PartitionMethod::kKway, scene.frames, scene.triangles,
+                            kPositionBits);
     const Clustering a = once.clusters(count);
-    const Clustering b = afresh.clusters(count);
+    const Clustering b = other.clusters(count);
     EXPECT_EQ(a.seeds, b.seeds);
     EXPECT_EQ(a.cluster_of_vertex, b.cluster_of_vertex);
   }
