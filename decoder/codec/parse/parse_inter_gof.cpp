@@ -74,10 +74,9 @@ Result<bool> InterGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   frames_.resize(gof_.num_frames);
   contexts_.emplace(mesh_, gof_.layer_group_size.size(), gof_.pattern.num_depths());
   order_.emplace(gof_.pattern, gof_.num_frames);
-  const Vector<std::uint32_t> none(gof_.pattern.temporal_layers, 0);
-  layer_places_.assign(gof_.pattern.temporal_layers, {0, none});
-  frames_of_group_.assign(gof_.pattern.temporal_layers,
-                          Vector<std::uint32_t>(gof_.layer_group_size.size()));
+  next_place_of_layer_.assign(gof_.pattern.temporal_layers, 0);
+  first_lacking_.assign(gof_.pattern.temporal_layers,
+                        Vector<std::uint32_t>(gof_.layer_group_size.size()));
   end_layer_group_ = layer_groups_that_stay(gof_.layer_group_size, cut_);
   end_temporal_layer_ = std::min(cut_.max_temporal_layers, gof_.pattern.temporal_layers);
   return true;
@@ -128,6 +127,7 @@ void InterGofParser::end_gof(BitReader& r, std::uint32_t num_frames,
       gof_.num_frames = num_frames;
       order_ = std::move(order);
       frames_.resize(num_frames);
+      for (Vector<std::uint32_t>& places : first_lacking_) std::ranges::fill(places, 0U);
       r.byte_alignment();
       r.expect_end();
       return;
@@ -150,6 +150,16 @@ Vector<std::uint32_t> InterGofParser::unit_places(const SliceEntry& unit) const 
   return places;
 }
 
+std::uint32_t InterGofParser::first_lacking(std::uint32_t layer, std::uint32_t group) {
+  std::uint32_t& place = first_lacking_[layer][group];
+  while (place < order_->num_frames() &&
+         (gof_.pattern.temporal_layer((*order_)[place].depth) != layer ||
+          frame_at(place).layer_groups > group)) {
+    ++place;
+  }
+  return place;
+}
+
 // 8.19.1 FrameMayFollow( )
 bool InterGofParser::may_follow(const SliceEntry& unit, std::span<const std::uint32_t> places) {
   const std::uint32_t first = places.front();
@@ -157,21 +167,13 @@ bool InterGofParser::may_follow(const SliceEntry& unit, std::span<const std::uin
   const std::uint32_t group = unit.layer_group_idx;
   const std::uint32_t layer = unit.temporal_layer_idx;
   const InterFrame& frame = frames_[unit.frame_idx];
-  LayerPlace& own = layer_places_[layer];
-  const std::uint32_t next = header_.open_end_flag ? next_place_ : own.next;
+  const std::uint32_t next = header_.open_end_flag ? next_place_ : next_place_of_layer_[layer];
   if (first + 1 < next || frame.layer_groups != group || frame.repeated) return false;
-  const auto count_to = [&](std::uint32_t end) {
-    for (std::uint32_t p = own.next == 0 ? 0 : own.next - 1; p < end; ++p) {
-      ++own.before[gof_.pattern.temporal_layer((*order_)[p].depth)];
-    }
-    own.next = end + 1;
-  };
-  count_to(first);
-  if (frames_of_group_[layer][group] != own.before[layer]) return false;
-  count_to(last);
+  if (first_lacking(layer, group) < first) return false;
   for (std::uint32_t t = 0; t < layer; ++t) {
-    if (frames_of_group_[t][group] < own.before[t]) return false;
+    if (first_lacking(t, group) < last) return false;
   }
+  next_place_of_layer_[layer] = last + 1;
   next_place_ = std::max(next_place_, last + 1);
   return true;
 }
@@ -233,15 +235,12 @@ bool InterGofParser::frame_start(BitReader& r, const SliceEntry& unit, std::uint
       gof_.max_earlier_distance > 0 && unit.layer_group_idx == 0 && place > 0;
   if (may_be_earlier && r.flag("earlier_flag")) earlier_frame(r, place);
   if (r.error()) return false;
-  Vector<std::uint32_t>& frames_of_group = frames_of_group_[unit.temporal_layer_idx];
   if (!frame.repeated) {
-    ++frames_of_group[unit.layer_group_idx];
     frame.layer_groups = unit.layer_group_idx + 1;
     return true;
   }
   // A repetition has the same layer groups.
   frame.layer_groups = frames_[*frame.repeated].layer_groups;
-  for (std::uint32_t j = 0; j < frame.layer_groups; ++j) ++frames_of_group[j];
   return false;
 }
 

@@ -69,6 +69,10 @@ class InterGofParser {
   void frames_of_group(BitReader& r, SliceEntry& unit, std::uint64_t unit_bit_pos);
   // Returns the places of the frames of a unit; fewer than it declares if the GOF has fewer.
   Vector<std::uint32_t> unit_places(const SliceEntry& unit) const;
+  // Returns the first place of a frame of a temporal layer that lacks a layer group, or the
+  // number of frames. Takes time in proportion to the frames of the GOF over all calls, since
+  // frames only gain layer groups.
+  std::uint32_t first_lacking(std::uint32_t layer, std::uint32_t group);
   bool may_follow(const SliceEntry& unit, std::span<const std::uint32_t> places);
   // Returns false if the frame repeats another.
   bool frame_start(BitReader& r, const SliceEntry& unit, std::uint32_t place);
@@ -90,17 +94,11 @@ class InterGofParser {
   std::optional<InterContexts> contexts_;
   std::optional<PatchContexts> patch_contexts_;  // none: no patches
   std::optional<FrameOrder> order_;
-  std::uint32_t next_place_ = 0;  // LastPlace + 1
-  // Progress of the frame units of a temporal layer.
-  struct LayerPlace {
-    std::uint32_t next = 0;        // LastPlaceOfLayer + 1
-    Vector<std::uint32_t> before;  // [temporal layer]: frames before next - 1
-  };
-  Vector<LayerPlace> layer_places_;
-  // [temporal layer][layer group] number of frames that have the layer group.
-  Vector<Vector<std::uint32_t>> frames_of_group_;
-  std::uint32_t end_layer_group_ = 0;     // first layer group that the cut drops
-  std::uint32_t end_temporal_layer_ = 0;  // first temporal layer that the cut drops
+  std::uint32_t next_place_ = 0;                 // LastPlace + 1
+  Vector<std::uint32_t> next_place_of_layer_;    // LastPlaceOfLayer + 1
+  Vector<Vector<std::uint32_t>> first_lacking_;  // [temporal layer][layer group]; lower bounds
+  std::uint32_t end_layer_group_ = 0;            // first layer group that the cut drops
+  std::uint32_t end_temporal_layer_ = 0;         // first temporal layer that the cut drops
   bool is_cut_ = false;
   std::optional<SliceEntry> last_unit_;
   std::uint64_t memory_bytes_ = 0;
