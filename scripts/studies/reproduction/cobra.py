@@ -9,8 +9,11 @@ import claims
 import cobra_findings
 import cobra_published as published
 import codec_table
+import page
+import plots
+import report
 from bench import Failure
-from paper import OURS, page, plots, report
+from paper import OURS
 
 COBRA = ["--profile", "main", *codec_table.COBRA.split()]
 TARGETS = (1, 0.5, 0.3, 0.2, 0.1)

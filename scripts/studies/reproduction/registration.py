@@ -10,11 +10,13 @@ import shutil
 import paper  # first: it adds folders to sys.path
 import claims
 import draw_partitions
+import page
 import registration_findings
 import registration_frames
 import registration_published as published
 import registration_tables
-from paper import OURS, page, report
+import report
+from paper import OURS
 
 FRAMES = ["--profile", "high", "--gof-kind", "inter", "--frame-pattern", "previous"]
 PLAIN = [*FRAMES, "--frame-weights", "plain", "--rest", "prediction"]

@@ -4,10 +4,13 @@
 import re
 
 import paper  # first: it adds folders to sys.path
+import page
+import plots
+import report
 import rlpca_findings
 import rlpca_paths
 import rlpca_published as published
-from paper import OURS, page, plots, report
+from paper import OURS
 
 METHODS = {  # options besides N, L and the quantisers, and a colour (as in figure 6 (a))
     "PCA": (["--frame", "world", "--no-rdo"], "#8a8a8a"),

@@ -4,12 +4,14 @@
 import paper  # first: it adds folders to sys.path
 import claims
 import models
+import page
+import report
 import rlpca_published
 import sslpc_findings
 import sslpc_published as published
 import temporal_cuts
 from bench import FLAT
-from paper import OURS, page, report
+from paper import OURS
 
 FRAMES = ["--profile", "high", "--gof-kind", "inter"]
 PLAIN = ["--frame-weights", "plain", "--rest", "prediction", "--patches", 0]
