@@ -6,6 +6,7 @@ import recipe as recipes
 import recipe_source
 import spec_program
 import stream_writer
+import writing_code
 
 import specdec  # found through stream_writer
 
@@ -167,7 +168,7 @@ class Decompiler:
     """Writes recipes, and checks with the builder that they give the stream again."""
 
     def __init__(self, program):
-        self._code = stream_writer.writing_code(program)
+        self._code = writing_code.writing_code(program)
         self._builder = recipe_source.StreamBuilder(program)
 
     def recipe(self, data, meta):

@@ -10,6 +10,7 @@ import json
 import mesh_gates
 import recipe_source
 import stream_writer
+import writing_code
 from recipe import Numbers
 
 _MAX_RESIDUAL = (1 << 28) - 1
@@ -283,7 +284,7 @@ class RandomBuilder:
 
     def __init__(self, program, plan=None, source=None, sequence=None):
         self._program = program
-        self._code = stream_writer.writing_code(program)
+        self._code = writing_code.writing_code(program)
         self._plan_class = plan or Plan
         self._source_class = source or RandomSource
         self._sequence_class = sequence or Sequence

@@ -5,6 +5,7 @@ import zlib
 import mesh_gates
 import recipe as recipes
 import stream_writer
+import writing_code
 
 SIGNATURE = bytes([137, 82, 76, 80, 67, 13, 10, 26])
 
@@ -269,8 +270,8 @@ class StreamBuilder:
 
     def __init__(self, program):
         self._program = program
-        self._elements = set(stream_writer.element_names(program))
-        self._code = stream_writer.writing_code(program)
+        self._elements = set(writing_code.element_names(program))
+        self._code = writing_code.writing_code(program)
 
     def build(self, recipe):
         """(bytes, StreamWriter)"""

@@ -18,11 +18,11 @@ import decompile
 import expectation
 import mesh_gates
 import random_high
+import range_writer
 import recipe as recipes
 import recipe_source
 import specdec
 import spec_program
-import stream_writer
 import stress
 import suite
 import suite_streams
@@ -257,7 +257,7 @@ class Random(RandomTest):
         self.assertEqual(self.digest("baseline"), "72adb70a7cd93a44")
 
     def test_carries_run_through_many_bytes(self):
-        writer = stream_writer.RangeWriter()
+        writer = range_writer.RangeWriter()
         writer.bytes += bytes([7, 255, 255, 255])
         writer.low = 0xFFFFFFFF
         writer.narrow(1, 0)

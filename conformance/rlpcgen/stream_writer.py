@@ -6,15 +6,15 @@ conditions and order are those of the text, a new syntax element needs nothing h
 that is not read back as it was written is noticed at once.
 """
 
-import ast
 import collections
-import functools
 import pathlib
 import sys
 import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "specdec"))
 import spec_program
+
+from range_writer import RangeWriter
 
 BIT_DESCRIPTORS = ("u", "ue", "se")
 MAX_RESIDUAL = 268435455
@@ -28,94 +28,8 @@ class WriteError(Exception):
     """A value that cannot be written, or that the specification reads as another one."""
 
 
-class _ElementCalls(ast.NodeTransformer):
-    """target = descriptor(args) becomes target = write_element(name, indices, descriptor, args)."""
-
-    def visit_Assign(self, node):
-        call = node.value
-        if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name)
-                and spec_program.is_descriptor(call.func.id)):
-            return node
-        target, indices = node.targets[0], []
-        while isinstance(target, ast.Subscript):
-            indices.insert(0, ast.parse(ast.unparse(target.slice), mode="eval").body)
-            target = target.value
-        arguments = [ast.Constant(target.id), ast.List(indices, ast.Load()),
-                     ast.Constant(call.func.id)] + call.args
-        node.value = ast.Call(ast.Name("write_element", ast.Load()), arguments, [])
-        return node
-
-
-def _element_calls(functions):
-    """The functions of a program with their elements written; clause 9 contains none."""
-    changed = {}
-    for name, (node, clause) in functions.items():
-        if clause.split(".")[0] != "9":
-            node = _ElementCalls().visit(ast.parse(ast.unparse(node)).body[0])
-        changed[name] = (node, clause)
-    return changed
-
-
-@functools.lru_cache(maxsize=None)
-def writing_code(program):
-    """The program that StreamWriter runs; made once for many streams."""
-    return program.code(transform=_element_calls)
-
-
-def element_names(program):
-    """Names of all syntax elements of a program, with their descriptors."""
-    names = {}
-    for node, clause in program.functions.values():
-        if clause.split(".")[0] == "9":
-            continue
-        for part in ast.walk(node):
-            if (isinstance(part, ast.Assign) and isinstance(part.value, ast.Call)
-                    and isinstance(part.value.func, ast.Name)
-                    and spec_program.is_descriptor(part.value.func.id)):
-                names[spec_program._base_name(part.targets[0])] = part.value.func.id
-    return names
-
-
 class _Stop(Exception):
     """The payload is to end here."""
-
-
-class RangeWriter:
-    """A range encoder: the bytes with which a range decoder takes the given decisions."""
-
-    def __init__(self):
-        self.bytes = bytearray()
-        self.low = 0  # lower end of the range, in the next 32 bits
-        self.carries = []  # length of each carry, in bytes
-
-    def narrow(self, by, shifts):
-        """The range now begins `by` higher; then the decoder took `shifts` bytes."""
-        self.low += by
-        self._carry()
-        for _ in range(shifts):
-            self.bytes.append(self.low >> 24)
-            self.low = (self.low << 8) & 0xFFFFFFFF
-
-    def _carry(self):
-        if self.low >> 32 == 0:
-            return
-        self.low &= 0xFFFFFFFF
-        at = len(self.bytes) - 1
-        while self.bytes[at] == 255:
-            self.bytes[at] = 0
-            at -= 1
-        self.bytes[at] += 1
-        self.carries.append(len(self.bytes) - at)
-
-    def finish(self, size, highest=False):
-        """Appends the lowest or the highest byte after which zeros lie in the range."""
-        if highest:
-            self.low = (self.low + size - 1) & ~0xFFFFFF
-        else:
-            self.low = (self.low + 0xFFFFFF) & ~0xFFFFFF
-        self._carry()
-        self.bytes.append(self.low >> 24)
-        return bytes(self.bytes)
 
 
 def exp_golomb(value):

@@ -9,32 +9,17 @@
 #include "common/codec/bits/int_math.h"
 #include "common/codec/components/series_predictor.h"
 #include "common/codec/components/track_order.h"
+#include "common/codec/kinds/skinned/recon/quaternion.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "common/codec/mesh/mesh.h"
 #include "common/memory/owned.h"
 
 namespace rlpc {
 
-// Unit quaternion (w, x, y, z) with 30 fractional bits.
-using Quaternion = std::array<std::int64_t, 4>;
-inline constexpr Quaternion kNoRotation{std::int64_t{1} << kQuaternionFractionBits, 0, 0, 0};
-
 inline constexpr int kOriginBits = 31;  // offsets and origins are clipped to this width
 
 // 8.12.1 StepOf( idx ), idx <= kMaxStepIdx; below 2^30.
 std::int64_t step_of(std::uint32_t idx);
-
-// 8.12.4 NormalizeQuaternion( q ): the unit quaternion along q; no rotation if q is zero.
-// |coordinates| < 2^56.
-Quaternion normalize_quaternion(Quaternion q);
-// 8.12.4 RotationAfter( p, q ): q followed by p, a unit quaternion; |coordinates of q| <= 2^30.
-Quaternion rotation_after(const Quaternion& p, const Quaternion& q);
-// 8.12.4 TurnedTowards( p, q ): returns whether it is -q rather than q.
-constexpr bool is_opposite(const Quaternion& p, const Quaternion& q) {
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3] < 0;
-}
-// 8.12.4 AxesOf( q ): the images of the x, y and z axis.
-std::array<Vec3l, 3> axes_of(const Quaternion& q);
 
 // Pose of a bone in one frame.
 struct BonePose {

@@ -7,72 +7,17 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <random>
 #include <vector>
 
 #include "common/codec/bits/residual_models.h"
 #include "common/codec/components/series_predictor.h"
 #include "common/codec/kinds/cluster/cluster_gof.h"
+#include "common/testing/real_quaternions.h"
 
 namespace rlpc {
 namespace {
 
-constexpr double kOne = 1 << kQuaternionFractionBits;
-constexpr std::int64_t kOneI = std::int64_t{1} << kQuaternionFractionBits;
 constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
-
-using Real4 = std::array<double, 4>;
-using Real3 = std::array<double, 3>;
-
-double length_of(const Quaternion& q) {
-  double sum = 0.0;
-  for (const std::int64_t x : q) sum += static_cast<double>(x) * static_cast<double>(x);
-  return std::sqrt(sum);
-}
-
-Real4 unit(const Quaternion& q) {
-  const double n = length_of(q);
-  Real4 u{};
-  for (std::size_t c = 0; c < 4; ++c) u[c] = static_cast<double>(q[c]) / n;
-  return u;
-}
-
-// The quaternion product in floating point, in vector form, as an independent reference.
-Real4 times(const Real4& p, const Real4& q) {
-  const auto cross = [](const Real4& a, const Real4& b, std::size_t c) {
-    const std::size_t i = 1 + c % 3;
-    const std::size_t k = 1 + (c + 1) % 3;
-    return a[i] * b[k] - a[k] * b[i];
-  };
-  Real4 r{p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3]};
-  for (std::size_t c = 1; c < 4; ++c) r[c] = p[0] * q[c] + q[0] * p[c] + cross(p, q, c);
-  return r;
-}
-
-// q (0, v) q*
-Real3 turned(const Real4& q, const Real3& v) {
-  const Real4 r = times(times(q, {0.0, v[0], v[1], v[2]}), {q[0], -q[1], -q[2], -q[3]});
-  return {r[1], r[2], r[3]};
-}
-
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  std::int64_t magnitude_below(std::int64_t n) {
-    const auto x = static_cast<std::int64_t>(engine_() % static_cast<std::uint64_t>(n));
-    return engine_() % 2 == 0 ? x : -x;
-  }
-  std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(engine_() % n); }
-  Quaternion quaternion(int bits) {
-    Quaternion q{};
-    for (std::int64_t& x : q) x = magnitude_below(std::int64_t{1} << bits);
-    return q;
-  }
-  Quaternion rotation() { return normalize_quaternion(quaternion(40)); }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 TEST(Steps, DoubleEveryEighth) {
   EXPECT_EQ(step_of(0), 1);
@@ -85,121 +30,8 @@ TEST(Steps, DoubleEveryEighth) {
   }
 }
 
-TEST(Quaternions, ZeroIsNormalisedToNoRotation) {
-  EXPECT_EQ(normalize_quaternion({0, 0, 0, 0}), kNoRotation);
-}
-
-TEST(Quaternions, OnAnAxisAreExact) {
-  for (const std::int64_t x :
-       {std::int64_t{1}, std::int64_t{12345}, (std::int64_t{1} << 56) - 1}) {
-    EXPECT_EQ(normalize_quaternion({x, 0, 0, 0}), kNoRotation) << x;
-    EXPECT_EQ(normalize_quaternion({0, 0, -x, 0}), (Quaternion{0, 0, -kOneI, 0})) << x;
-  }
-}
-
-// The bounds of 8.12.4, for coordinates of every width up to 56 bits.
-TEST(Quaternions, AreOfUnitLengthAndKeepTheirDirection) {
-  Random random(1);
-  for (int bits = 1; bits <= 56; ++bits) {
-    for (int i = 0; i < 300; ++i) {
-      Quaternion q = random.quaternion(bits);
-      if (i % 3 == 0) q[random.below(4)] = (std::int64_t{1} << bits) - 1;
-      if (i % 5 == 0) q[random.below(4)] = -(std::int64_t{1} << bits) + 1;
-      const Quaternion u = normalize_quaternion(q);
-      ASSERT_LT(length_of(u), kOne + 8.0) << bits;
-      ASSERT_GT(length_of(u), kOne - 8.0) << bits;
-      if (q == Quaternion{}) continue;
-      const Real4 exact = unit(q);
-      for (std::size_t c = 0; c < 4; ++c) {
-        ASSERT_LE(std::abs(u[c]), kOneI);
-        // Scaling to 29 bits causes an error of 1/2 per coordinate: 2 here, and 4 in the norm.
-        ASSERT_NEAR(static_cast<double>(u[c]), exact[c] * kOne, 8.0) << bits;
-      }
-    }
-  }
-}
-
-TEST(Quaternions, ProductsAreHamiltonProducts) {
-  Random random(2);
-  for (int i = 0; i < 20000; ++i) {
-    const Quaternion p = random.rotation();
-    const Quaternion q = i % 2 == 0 ? random.rotation() : random.quaternion(30);
-    Quaternion corner{kOneI, kOneI - 1, -kOneI, kOneI - 1};  // the maximum length
-    if (i % 7 == 0) std::rotate(corner.begin(), corner.begin() + i % 4, corner.end());
-    const Quaternion& second = i % 7 == 0 ? corner : q;
-    if (length_of(second) < kOne / 16) continue;  // too short to have a precise direction
-    const Quaternion r = rotation_after(p, second);
-    const Real4 exact = times(unit(p), unit(second));
-    for (std::size_t c = 0; c < 4; ++c) {
-      ASSERT_NEAR(static_cast<double>(r[c]), exact[c] * kOne, 32.0) << i;
-    }
-  }
-}
-
-// Bit-exact results of the pseudo-code of 8.12.4.
-TEST(Quaternions, AgreeWithThePseudoCode) {
-  const Quaternion p = normalize_quaternion({3, -1, 2, 5});
-  const Quaternion q = normalize_quaternion({7, 1, -1, 1});
-  EXPECT_EQ(p, (Quaternion{515808888, -171936296, 343872592, 859681480}));
-  EXPECT_EQ(normalize_quaternion({-123456789012345, 98765432109876, 5, -1}),
-            (Quaternion{-838451497, 670761205, 0, 0}));
-  EXPECT_EQ(
-      normalize_quaternion({72057594037927935, -36028797018963965, 18014398509481991, -12345}),
-      (Quaternion{937238702, -468619351, 234309676, 0}));
-  EXPECT_EQ(rotation_after(p, q), (Quaternion{453022211, 71529822, 405335663, 882201148}));
-  EXPECT_EQ(rotation_after(q, p), (Quaternion{453022212, -262276016, 119216372, 929887698}));
-  EXPECT_EQ(rotation_after(p, {kOneI, 1 << 20, -kOneI, 12345}),
-            (Quaternion{607998198, 486668146, -120982254, 729230488}));
-  EXPECT_EQ(axes_of(p), (std::array<Vec3l, 3>{{{-523104992, 715827883, -605700517},
-                                               {-936082616, -357913942, 385445783},
-                                               {55063683, 715827883, 798423407}}}));
-}
-
-TEST(Quaternions, NoRotationIsNeutral) {
-  EXPECT_EQ(rotation_after(kNoRotation, kNoRotation), kNoRotation);
-  Random random(3);
-  for (int i = 0; i < 1000; ++i) {
-    const Quaternion q = random.rotation();
-    for (const Quaternion& r :
-         {rotation_after(kNoRotation, q), rotation_after(q, kNoRotation)}) {
-      for (std::size_t c = 0; c < 4; ++c) {
-        ASSERT_NEAR(static_cast<double>(r[c]), static_cast<double>(q[c]), 8.0);
-      }
-    }
-  }
-}
-
-TEST(Axes, AreExactForNoRotationAndQuarterTurns) {
-  EXPECT_EQ(axes_of(kNoRotation),
-            (std::array<Vec3l, 3>{{{kOneI, 0, 0}, {0, kOneI, 0}, {0, 0, kOneI}}}));
-  const Quaternion about_z = normalize_quaternion({1 << 20, 0, 0, 1 << 20});
-  const auto axes = axes_of(about_z);
-  const std::array<Vec3l, 3> exact{{{0, kOneI, 0}, {-kOneI, 0, 0}, {0, 0, kOneI}}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_LE(std::abs(axes[k][c] - exact[k][c]), 4) << k << c;
-  }
-}
-
-TEST(Axes, AreTheRotatedAxes) {
-  Random random(4);
-  for (int i = 0; i < 5000; ++i) {
-    const Quaternion q = random.rotation();
-    const auto axes = axes_of(q);
-    for (std::size_t k = 0; k < 3; ++k) {
-      Real3 axis{};
-      axis[k] = 1.0;
-      const Real3 exact = turned(unit(q), axis);
-      for (std::size_t c = 0; c < 3; ++c) {
-        ASSERT_NEAR(static_cast<double>(axes[k][c]), exact[c] * kOne, 24.0);
-        ASSERT_LE(std::abs(axes[k][c]), kOneI + 16) << "the bound of 8.12.3";
-      }
-    }
-  }
-}
-
 TEST(MovedPoint, MapsThePivotToTheOrigin) {
-  Random random(5);
+  RandomRotations random(5);
   BonePose pose;
   pose.rotation = random.rotation();
   pose.axes = axes_of(pose.rotation);
@@ -218,7 +50,7 @@ TEST(MovedPoint, IsRoundedToTheNearest) {
 // Compares points and pivots at the ends of their ranges with floating point; an overflow would
 // exceed the tolerance by far.
 TEST(MovedPoint, IsAccurateAtTheEndsOfItsRange) {
-  Random random(6);
+  RandomRotations random(6);
   constexpr std::int64_t kPoint = (std::int64_t{1} << 31) - 1;
   constexpr std::int64_t kPivot = std::int64_t{1} << 28;
   for (int i = 0; i < 5000; ++i) {
@@ -323,7 +155,7 @@ class RealBone {
 
 constexpr std::uint32_t kFrames = 16;
 
-Bone random_bone(Random& random, std::size_t index) {
+Bone random_bone(RandomRotations& random, std::size_t index) {
   Bone bone;
   bone.parent =
       static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(index) + 1)) - 1;
@@ -353,7 +185,7 @@ Bone random_bone(Random& random, std::size_t index) {
 TEST(RandomBones, MoveAsInFloatingPoint) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomRotations random(seed);
     std::vector<Bone> bones;
     for (std::size_t b = 0; b < 6; ++b) bones.push_back(random_bone(random, b));
     const std::vector<BoneMotion> motions = recon_bones(bones, kFrames, 0);
@@ -386,7 +218,7 @@ TEST(RandomBones, MoveAsInFloatingPoint) {
 
 // Residuals are ignored if the flags are off.
 TEST(Bones, StayOrFollowTheirParentWithoutFlags) {
-  Random random(7);
+  RandomRotations random(7);
   Bone still;
   still.pivot = {5, -6, 7};
   still.rotation_residual = still.origin_residual = TrackResiduals(kFrames, Vec3i{9, 9, 9});
@@ -411,7 +243,7 @@ TEST(Bones, StayOrFollowTheirParentWithoutFlags) {
 // Where the residual of a frame is zero, the motion equals the prediction from the preceding
 // frames in the order of the track.
 TEST(Bones, ZeroResidualsReproduceThePredictions) {
-  Random random(8);
+  RandomRotations random(8);
   for (int i = 0; i < 150; ++i) {
     Bone bone = random_bone(random, 0);
     bone.rotation_flag = bone.origin_flag = true;
