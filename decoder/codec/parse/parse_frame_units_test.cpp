@@ -301,6 +301,19 @@ TEST(ParseFrameUnits, AGofEndsAfterTheFramesThatItHas) {
   expect_invalid_at(gof.end_before(8), "R-FRM-02", "frame_idx", 0);
 }
 
+TEST(ParseFrameUnits, AnEndThatIsRefusedChangesNothing) {
+  OpenGof gof({}, 1, 8, 4);
+  FrameRecipe recipe(5);
+  recipe.gof_end_flag = true;
+  Bytes payload = recipe.payload();
+  payload.push_back(0);  // after the end
+  expect_invalid(gof.units.frame(payload), "R-BIT-03", "unit_payload");
+  EXPECT_EQ(gof.units.parser().order().num_frames(), 8U);
+  const InterGof parsed = gof.units.parser().finish();
+  EXPECT_EQ(parsed.num_frames, 8U);
+  EXPECT_EQ(parsed.frames->size(), 8U);
+}
+
 TEST(ParseFrameUnits, AGofDoesNotEndBeforeItsFirstFrame) {
   OpenGof gof({}, 1, 8, 0);
   expect_no_end(gof.end_before(0));

@@ -124,12 +124,13 @@ void InterGofParser::end_gof(BitReader& r, std::uint32_t num_frames,
   if (num_frames > 0) {
     FrameOrder order(gof_.pattern, num_frames);
     if (order.begins_as(*order_, next_place_)) {
+      r.byte_alignment();
+      r.expect_end();
+      if (r.error()) return;
       gof_.num_frames = num_frames;
       order_ = std::move(order);
       frames_.resize(num_frames);
       for (Vector<std::uint32_t>& places : first_lacking_) std::ranges::fill(places, 0U);
-      r.byte_alignment();
-      r.expect_end();
       return;
     }
   }

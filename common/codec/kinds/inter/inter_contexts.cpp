@@ -1,6 +1,11 @@
 #include "common/codec/kinds/inter/inter_contexts.h"
 
+#include <type_traits>
+
 namespace rlpc {
+
+static_assert(!std::is_copy_constructible_v<InterContexts> &&
+              !std::is_copy_assignable_v<InterContexts>);
 
 InterContexts::InterContexts(const OrderedMesh& mesh, std::size_t num_layer_groups,
                              std::uint32_t num_depths)

@@ -22,6 +22,9 @@ class InterContexts {
   // The mesh must have layers, and outlive it.
   InterContexts(const OrderedMesh& mesh, std::size_t num_layer_groups,
                 std::uint32_t num_depths);
+  // Points into its own state.
+  InterContexts(const InterContexts&) = delete;
+  InterContexts& operator=(const InterContexts&) = delete;
 
   // Starts a frame that repeats no other, with its place in coding order and its depth, and
   // each of its layer groups.

@@ -83,7 +83,7 @@ PatchSearch::PatchSearch(const OrderedMesh& mesh, const InterSettings& settings,
       wanted_(3 * std::size_t{mesh.num_vertices()}),
       left_(wanted_.size()),
       of_neighbours_(mesh, settings.layer_group_size.size(), settings.pattern.num_depths()),
-      of_motions_(of_neighbours_) {
+      of_motions_(mesh, settings.layer_group_size.size(), settings.pattern.num_depths()) {
   for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
     vertices_[settings.patch_of_vertex[v]].push_back(v);
   }
