@@ -292,10 +292,10 @@ void StreamValidator::gof_hash(const UnitHeader& unit, const Payload& payload) {
   }
   findings_.suspect(findings_.suspect() || gof_.suspect);
   BitReader r = bits_of(unit, payload);
-  if (is_live(lead_.header->header, GofKind::kInter) && gof_.access_unit &&
-      gof_.access_unit->header().kind == GofKind::kInter) {
+  if (gof_.access_unit && is_live(lead_.header->header, gof_.access_unit->header().kind)) {
     findings_.unchecked("R-HSH-03", "unit_type", unit.offset * 8,
-                        "inter GOFs of an open-ended stream have hashes in their frame units");
+                        std::string(kind_name(gof_.access_unit->header().kind)) +
+                            " GOFs of an open-ended stream have hashes in their frame units");
     return;
   }
   const auto hash = parse_gof_hash(r, gof_.num_frames);

@@ -1,6 +1,9 @@
 // 6.5 gof( ): beginning of every kind of GOF.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -17,22 +20,42 @@ enum class GofKind : std::uint8_t {
   kInter,      // 6.14: frames predicted from frames
 };
 
-// Returns the name of a kind, for messages: "a cluster GOF".
-constexpr const char* kind_name(GofKind kind) {
-  if (kind == GofKind::kInter) return "inter";
-  return kind == GofKind::kCluster ? "cluster" : "skinned";
-}
+// Properties of a kind that hold for each of its GOFs.
+struct KindProperties {
+  GofKind kind;
+  const char* name;           // in messages: "a cluster GOF"
+  bool has_rig;               // its vertices are those of a shared rig
+  std::uint32_t profile_idc;  // the lowest profile with this kind
+  // Table 7-1: type of the units that may follow the GOF unit in its access unit before its
+  // hash. None if no units may.
+  std::optional<UnitType> slice_type;
+  bool is_live;  // frames of an open-ended stream are output before their GOF ends
+};
 
-// Table 7-1: returns the type of the units that may follow the GOF unit in its access unit
-// before its hash: slice units or frame units. None if no units may.
+inline constexpr std::array<KindProperties, 4> kGofKinds{{
+    {GofKind::kCluster, "cluster", false, kProfileBaseline, std::nullopt, false},
+    {GofKind::kSkinned, "skinned", false, kProfileMain, UnitType::kSlice, false},
+    {GofKind::kSharedRig, "skinned", true, kProfileHigh, UnitType::kSlice, false},
+    {GofKind::kInter, "inter", false, kProfileHigh, UnitType::kFrame, true},
+}};
+
+constexpr const KindProperties& properties_of(GofKind kind) {
+  return kGofKinds[static_cast<std::size_t>(kind)];
+}
+static_assert(std::all_of(kGofKinds.begin(), kGofKinds.end(), [](const KindProperties& k) {
+  return properties_of(k.kind).kind == k.kind;
+}));
+
+// Returns the name of a kind, for messages: "a cluster GOF".
+constexpr const char* kind_name(GofKind kind) { return properties_of(kind).name; }
+// Returns the type of the units that may follow a GOF unit: slice units or frame units.
 constexpr std::optional<UnitType> slice_type(GofKind kind) {
-  if (kind == GofKind::kCluster) return std::nullopt;
-  return kind == GofKind::kInter ? UnitType::kFrame : UnitType::kSlice;
+  return properties_of(kind).slice_type;
 }
 constexpr bool has_slices(GofKind kind) { return slice_type(kind).has_value(); }
 // 6.1 IsLive( ): returns whether frames of a GOF are output before it ends.
 constexpr bool is_live(const SequenceHeader& header, GofKind kind) {
-  return header.open_end_flag && kind == GofKind::kInter;
+  return header.open_end_flag && properties_of(kind).is_live;
 }
 
 struct GofHeader {

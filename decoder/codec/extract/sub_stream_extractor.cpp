@@ -159,13 +159,13 @@ Result<Bytes> SubStreamExtractor::attributes(const UnitHeader& unit) {
   return Bytes{};
 }
 
-// In an inter GOF, no frame depends on a frame of a higher temporal layer, and the first frame
-// is in layer 0.
+// In a GOF with frame units, no frame depends on a frame of a higher temporal layer, and the
+// first frame is in layer 0.
 bool SubStreamExtractor::cuts_first_frame() const {
   if (summary_.gofs.empty()) return false;
   const GofSummary& gof = summary_.gofs.front();
   SliceCut cut = cut_;
-  if (gof.kind == GofKind::kInter) cut.max_temporal_layers = SliceCut::kAll;
+  if (slice_type(gof.kind) == UnitType::kFrame) cut.max_temporal_layers = SliceCut::kAll;
   return gof.is_cut_by(cut) || (gof.rig && gof.rig->is_cut_by(cut));
 }
 

@@ -1,6 +1,11 @@
 #include "decoder/codec/parse/parse_gof_header.h"
 
+#include <cstddef>
+
 namespace rlpc {
+
+// Every code of gof_kind is a kind.
+static_assert(kGofKinds.size() == std::size_t{1} << 2);
 
 std::uint32_t parse_first_frame(BitReader& r, Range range) {
   return r.ue("first_frame", range, "R-GOF-01");

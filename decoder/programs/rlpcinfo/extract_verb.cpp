@@ -136,7 +136,7 @@ void print_text(const ExtractOptions& o, const SubStreamExtractor& cutter,
     if (!has_slices(gof.kind)) {
       std::printf("  %s: %s GOF, %" PRIu64 " bytes, kept whole\n", name.c_str(),
                   kind_name(gof.kind), gof.bytes);
-    } else if (gof.kind == GofKind::kInter) {
+    } else if (slice_type(gof.kind) == UnitType::kFrame) {
       std::printf("  %s: %u of %u layers, %zu of %zu frame units, %" PRIu64 " of %" PRIu64
                   " bytes\n",
                   name.c_str(), after.num_layers, before.num_layers, after.num_slices,

@@ -179,9 +179,8 @@ void print_kinds(const StreamSummary& stream) {
     for (const GofSummary& gof : stream.gofs) {
       if (gof.kind == kind) gofs.push_back(&gof);
     }
-    print_figures(kind == GofKind::kSharedRig ? "skinned GOFs with shared rigs"
-                                              : std::string(kind_name(kind)) + " GOFs",
-                  gofs);
+    const char* with_rigs = properties_of(kind).has_rig ? " with shared rigs" : "";
+    print_figures(std::string(kind_name(kind)) + " GOFs" + with_rigs, gofs);
   }
 }
 
@@ -274,7 +273,7 @@ void print_gof(const GofSummary& gof) {
   }
   const std::string what = gof.rig ? "tracks of shared rig " + std::to_string(gof.rig->number)
                                    : figures_of(gof)[0];  // the table has the others
-  const char* units = gof.kind == GofKind::kInter ? "frame units" : "slices";
+  const char* units = slice_type(gof.kind) == UnitType::kFrame ? "frame units" : "slices";
   std::printf("%s in %" PRIu64 " bytes; %s in bytes\n", what.c_str(), gof.bytes, units);
   print_slices(gof, "GOF to here");
   print_vertex_modes(gof);
