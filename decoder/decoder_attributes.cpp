@@ -5,6 +5,7 @@
 #include "common/codec/attributes/recon/attribute_recon.h"
 #include "common/codec/bits/crc32.h"
 #include "common/memory/owned.h"
+#include "decoder/codec/gofs/make_recon.h"
 #include "decoder/codec/parse/attributes/parse_attributes.h"
 #include "decoder/codec/parse/sequence/parse_asset.h"
 #include "decoder/decoder_impl.h"

@@ -7,7 +7,7 @@
 #include "common/codec/bits/crc32.h"
 #include "common/codec/mesh/clip.h"
 #include "conformance/rlpcval/validator_stream.h"
-#include "decoder/codec/gofs/gof_recon.h"
+#include "decoder/codec/gofs/make_recon.h"
 #include "decoder/codec/parse/attributes/parse_attributes.h"
 
 namespace rlpc {

@@ -11,7 +11,7 @@
 #include "conformance/rlpcval/validator_elements.h"
 #include "conformance/rlpcval/validator_gofs.h"
 #include "conformance/rlpcval/validator_stream.h"
-#include "decoder/codec/gofs/gof_recon.h"
+#include "decoder/codec/gofs/make_recon.h"
 #include "decoder/codec/parse/memory_estimate.h"
 #include "decoder/codec/parse/parse_gof_hash.h"
 #include "decoder/codec/parse/sequence/parse_clip_table.h"

@@ -17,11 +17,11 @@
 #include "conformance/rlpcval/validator_headers.h"
 #include "conformance/rlpcval/validator_rigs.h"
 #include "conformance/rlpcval/validator_units.h"
-#include "decoder/codec/gofs/rig_recons.h"
-#include "decoder/codec/parse/access_unit_parser.h"
+#include "decoder/codec/kinds/skinned/parse/rig_parser.h"
 #include "decoder/codec/parse/memory_limit.h"
 #include "decoder/codec/parse/parse_gof_hash.h"
-#include "decoder/codec/parse/rig_parser.h"
+#include "decoder/codec/recon/rig_recons.h"
+#include "decoder/codec/units/access_unit_parser.h"
 
 namespace rlpc {
 

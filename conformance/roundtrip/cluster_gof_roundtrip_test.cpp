@@ -10,7 +10,7 @@
 #include "common/codec/bits/residual_models.h"
 #include "common/codec/kinds/cluster/recon/cluster_recon.h"
 #include "conformance/testing/count_memory.h"
-#include "decoder/codec/parse/parse_cluster_gof.h"
+#include "decoder/codec/kinds/cluster/parse/parse_cluster_gof.h"
 #include "decoder/codec/parse/parse_gof_header.h"
 #include "encoder/codec/write/write_cluster_gof.h"
 

@@ -1,6 +1,4 @@
 // Tests the GOF list of rlpcinfo for streams with layer groups, an absent slice, and clusters.
-#include "decoder/codec/units/gof_summary.h"
-
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -9,6 +7,7 @@
 
 #include "conformance/testing/rig_animation.h"
 #include "conformance/testing/stream_summary.h"
+#include "decoder/codec/units/stream_summary.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

@@ -9,7 +9,7 @@
 
 #include "conformance/testing/small_animation.h"
 #include "conformance/testing/stream_summary.h"
-#include "decoder/codec/units/gof_summary.h"
+#include "decoder/codec/units/stream_summary.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

@@ -14,9 +14,9 @@
 #include "common/parallel/for_each.h"
 #include "common/testing/random_inter_gof.h"
 #include "common/testing/tube.h"
-#include "decoder/codec/gofs/ordered_recon.h"
+#include "decoder/codec/kinds/inter/ordered_recon.h"
+#include "decoder/codec/kinds/inter/parse/parse_inter_gof.h"
 #include "decoder/codec/parse/parse_gof_header.h"
-#include "decoder/codec/parse/parse_inter_gof.h"
 #include "encoder/codec/kinds/inter/closed_loop.h"
 #include "encoder/codec/write/write_inter_gof.h"
 

@@ -14,7 +14,7 @@
 #include "conformance/testing/count_memory.h"
 #include "conformance/testing/cut_streams.h"
 #include "conformance/testing/rig_animation.h"
-#include "decoder/codec/gofs/rig_recons.h"
+#include "decoder/codec/recon/rig_recons.h"
 #include "decoder/codec/units/stream_reader.h"
 #include "decoder/rlpc_decoder.h"
 

@@ -13,8 +13,8 @@
 #include "common/codec/kinds/skinned/recon/rig_recon.h"
 #include "common/codec/kinds/skinned/recon/skinned_recon.h"
 #include "common/testing/split_skinned_gof.h"
+#include "decoder/codec/kinds/skinned/parse/parse_skinned_gof.h"
 #include "decoder/codec/parse/parse_gof_header.h"
-#include "decoder/codec/parse/parse_skinned_gof.h"
 #include "encoder/codec/write/write_skinned_gof.h"
 
 namespace rlpc {

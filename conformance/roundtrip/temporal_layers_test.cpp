@@ -11,7 +11,7 @@
 #include "conformance/testing/frame_by_frame.h"
 #include "conformance/testing/small_animation.h"
 #include "conformance/testing/stream_summary.h"
-#include "decoder/codec/units/gof_summary.h"
+#include "decoder/codec/units/stream_summary.h"
 
 namespace rlpc {
 namespace {

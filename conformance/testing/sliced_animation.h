@@ -8,14 +8,12 @@
 #include <variant>
 #include <vector>
 
-#include "common/codec/kinds/access_unit.h"
 #include "common/codec/kinds/cluster/recon/cluster_recon.h"
 #include "common/codec/kinds/skinned/recon/skinned_recon.h"
 #include "common/codec/mesh/topology.h"
 #include "conformance/testing/small_animation.h"
 #include "encoder/codec/write/write_cluster_gof.h"
 #include "encoder/codec/write/write_connectivity.h"
-#include "encoder/codec/write/write_inter_gof.h"
 #include "encoder/codec/write/write_skinned_gof.h"
 #include "encoder/codec/write/write_stream.h"
 
@@ -49,7 +47,7 @@ class SlicedAnimation {
   }
   // Has cluster GOFs and skinned GOFs in turn.
   StreamBytes mixed_stream() {
-    std::vector<AnyGof> gofs;
+    std::vector<OneGof> gofs;
     for (std::uint32_t g = 0; g < 7; ++g) {
       if (g % 2 == 0) {
         gofs.emplace_back(clusters(g * kGofFrames));
@@ -65,10 +63,11 @@ class SlicedAnimation {
   static constexpr std::uint32_t kVertices = 5 * kRings;
   static constexpr std::uint32_t kGofFrames = 2;
   static constexpr std::uint32_t kGroups = 2;
+  using OneGof = std::variant<ClusterGof, SkinnedGof>;
 
-  StreamBytes stream_of(const std::vector<AnyGof>& gofs) {
+  StreamBytes stream_of(const std::vector<OneGof>& gofs) {
     StreamBytes bytes = lead(static_cast<std::uint32_t>(gofs.size()));
-    for (const AnyGof& any : gofs) {
+    for (const OneGof& any : gofs) {
       std::visit([&](const auto& gof) { append_gof(bytes, gof); }, any);
     }
     append(bytes, UnitType::kEndOfSequence, write_end_of_sequence(0));
@@ -202,12 +201,6 @@ class SlicedAnimation {
     append(bytes, UnitType::kGof, payloads.first);
     for (const Bytes& slice : payloads.slices) append(bytes, UnitType::kSlice, slice);
     append(bytes, UnitType::kGofHash, write_gof_hash(hashes(mesh, gof), true));
-  }
-  void append_gof(StreamBytes& bytes, const InterGof& gof) const {
-    const OrderedMesh mesh(Prediction::kLayers, topology_, layers_);
-    const InterGofPayloads payloads = write_inter_gof(gof, mesh);
-    append(bytes, UnitType::kGof, payloads.first);
-    for (const Bytes& frame : payloads.frames) append(bytes, UnitType::kFrame, frame);
   }
   void append_gof(StreamBytes& bytes, const ClusterGof& gof) const {
     append(bytes, UnitType::kGof, write_cluster_gof(gof, header_, topology_));

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "decoder/codec/units/gof_summary.h"
 #include "decoder/codec/units/stream_reader.h"
+#include "decoder/codec/units/stream_summary.h"
 
 namespace rlpc {
 

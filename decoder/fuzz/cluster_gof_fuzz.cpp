@@ -10,7 +10,7 @@
 
 #include "common/codec/kinds/cluster/recon/cluster_recon.h"
 #include "common/testing/fuzz_input.h"
-#include "decoder/codec/parse/parse_cluster_gof.h"
+#include "decoder/codec/kinds/cluster/parse/parse_cluster_gof.h"
 #include "decoder/codec/parse/parse_gof_header.h"
 #include "decoder/codec/parse/sequence/parse_connectivity.h"
 #include "decoder/codec/parse/sequence/parse_sequence_header.h"

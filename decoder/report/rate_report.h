@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "decoder/codec/units/gof_summary.h"
+#include "decoder/codec/units/stream_summary.h"
 #include "decoder/report/bit_counter.h"
 #include "decoder/report/html_page.h"
 

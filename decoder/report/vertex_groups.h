@@ -1,28 +1,11 @@
-// Groups of the vertices of a GOF for pictures: its clusters, bones or patches.
+// Groups of the vertices of a GOF of any kind.
 #pragma once
-
-#include <array>
-#include <cstdint>
-#include <vector>
 
 #include "common/codec/kinds/access_unit.h"
 #include "common/codec/syntax/stream_context.h"
+#include "decoder/codec/summary/vertex_groups.h"
 
 namespace rlpc {
-
-enum class GroupKind : std::uint8_t { kNone, kClusters, kBones, kPatches };
-
-struct VertexGroups {
-  GroupKind kind = GroupKind::kNone;  // kNone: an inter GOF without patches
-  std::uint32_t first_frame = 0;
-  std::uint32_t num_frames = 0;
-  std::uint32_t num_groups = 0;
-  // [num_vertices], in decoded order: the first cluster that a seed vertex seeds; the first
-  // bone with the greatest weight.
-  std::vector<std::uint32_t> of_vertex;
-  // Vertices of the seed triangles of clusters that have one, in the order of clusters.
-  std::vector<std::array<std::uint32_t, 3>> seeds;
-};
 
 VertexGroups vertex_groups(const AccessUnit& access_unit, const StreamContext& context);
 

@@ -10,8 +10,8 @@
 
 #include "common/codec/bits/trace.h"
 #include "common/codec/mesh/ordered_meshes.h"
+#include "decoder/codec/kinds/inter/parse/parse_inter_gof.h"
 #include "decoder/codec/parse/parse_gof_header.h"
-#include "decoder/codec/parse/parse_inter_gof.h"
 #include "decoder/testing/skinned_gof_units.h"
 
 namespace rlpc {

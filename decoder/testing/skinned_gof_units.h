@@ -11,8 +11,8 @@
 
 #include "common/codec/mesh/ordered_meshes.h"
 #include "common/codec/syntax/sequence_header.h"
+#include "decoder/codec/kinds/skinned/parse/parse_skinned_gof.h"
 #include "decoder/codec/parse/parse_gof_header.h"
-#include "decoder/codec/parse/parse_skinned_gof.h"
 
 namespace rlpc {
 

@@ -4,18 +4,20 @@
 Citations    "// 8.4.2 Title", "clause 8.4.2", "Annex B" and "Table 9-1" in comments of C++ code
              exist in spec/; a title after a number at the start of a comment equals the heading,
              or names a function of that clause, as in "// 6.3.1 sequence_header( )".
-Parsers      each parse_*( ) of the headers of decoder/codec/parse/ cites its clause.
+Parsers      each parse_*( ) of the headers of decoder/codec/parse/ and decoder/codec/kinds/*/parse/
+             cites its clause.
 Rules        every rule id in C++ code or pseudo-code, like R-HDR-03, is defined once in spec/,
              as {R-HDR-03}.
 Elements     every syntax element of the `rlpc` blocks (name = u(1), name = ue(), name = ae(...))
-             is a string literal in exactly one file of decoder/codec/parse/ (or the reader of
-             units), or read in exactly one other file of decoder/, and no file reads other
-             elements. An element that several functions of the specification read may be in as many
-             files. Blocks of the clause of the parsing process describe bins, not elements.
+             is a string literal in exactly one of these files (or the reader of units), or read
+             in exactly one other file of decoder/, and no file reads other elements. An element
+             that several functions of the specification read may be in as many files. Blocks of
+             the clause of the parsing process describe bins, not elements.
 """
 
 import collections
 import dataclasses
+import fnmatch
 import itertools
 import re
 import sys
@@ -23,7 +25,9 @@ import sys
 import cpp_source
 
 PARSING_PROCESS = "9"
-PARSERS = ("decoder/codec/parse/", "decoder/codec/units/unit_reader.")
+# Where parsers are: of what kinds of GOF share and of other units, of each kind, of unit headers.
+PARSERS = ("decoder/codec/parse/", "decoder/codec/kinds/*/parse/",
+           "decoder/codec/units/unit_reader.")
 
 _NUMBER = r"(?:\d+|[A-Z])(?:\.\d+)*"
 _DOTTED = r"(?:[1-9]\d*|[A-Z])(?:\.[1-9]\d*)+"
@@ -197,10 +201,19 @@ def check_elements(spec, parsers):
                            f"{match.group(1)} is in no syntax table")
 
 
+def is_in(place, name):
+    return fnmatch.fnmatchcase(name, place + "*")
+
+
+def is_parser(relative):
+    return any(is_in(place, relative.as_posix()) for place in PARSERS)
+
+
 def uncited(root, spec):
     """Declarations of parsers without a clause, in the comment above them or that of the file."""
-    for path in sorted((root / PARSERS[0]).rglob("*.h")):
-        if cpp_source.is_test(path):
+    for path in cpp_source.files(root, ("decoder",)):
+        if (path.suffix != ".h" or cpp_source.is_test(path)
+                or not is_parser(path.relative_to(root))):
             continue
         lines = cpp_source.read(path).splitlines()
         opening = " ".join(itertools.takewhile(lambda line: line.startswith("//"), lines))
@@ -238,10 +251,10 @@ def check(root):
         used |= set(_RULE.findall(text))
         if relative.parts[0] == "decoder" and not cpp_source.is_test(path):
             text = cpp_source.without_comments(text)
-            parsers[str(relative)] = (text if relative.as_posix().startswith(PARSERS)
+            parsers[str(relative)] = (text if is_parser(relative)
                                       else cpp_source.kept(text, _READ))
     complaints += [f"{place} has no sources" for place in PARSERS
-                   if not any(name.startswith(place) for name in parsers)]
+                   if not any(is_in(place, name) for name in parsers)]
     complaints += check_elements(spec, parsers)
     complaints += uncited(root, spec)
     summary = (f"{len(spec.clauses)} clauses, {len(spec.elements)} syntax elements, "

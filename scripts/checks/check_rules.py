@@ -88,6 +88,11 @@ def text_of(found):
     return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
 
 
+# Includes of parsers, and of what finds the parser of each kind of GOF.
+_PARSER = re.compile(r'#include "(decoder/codec/(?:parse/|kinds/|units/access_unit_parser)'
+                     r'[\w/]*)\.h"')
+
+
 def validator_code(root):
     """The code with which rlpcval checks streams, without comments; "" if there is none."""
     own = [path for path in sorted((root / "conformance" / "rlpcval").glob("validator*"))
@@ -101,7 +106,7 @@ def validator_code(root):
         paths = [root / name for name in sorted(waiting) if (root / name).exists()]
         text += "".join(cpp_source.without_comments(cpp_source.read(path))
                         for path in paths)
-        included = re.findall(r'#include "(decoder/codec/parse/[\w/]+)\.h"', text)
+        included = _PARSER.findall(text)
         waiting = {name + end for name in included for end in (".h", ".cpp")} - seen
     return text
 

@@ -22,8 +22,14 @@ _SHAPE = _MESH | {"common/codec/components", "common/codec/rest"}
 _GOFS = _SHAPE | {"common/codec/syntax"} | _of_kinds(_KIND)
 _RECON = {"common/codec/kernels", "common/codec/mesh_prediction", "common/parallel"}
 _RECON |= _of_kinds(_KIND + "/recon")
+_KIND_DECODER = _GOFS | _RECON | {"common/codec/kinds", "decoder/codec/parse",
+                                  "decoder/codec/recon", "decoder/codec/slice_cut.h",
+                                  "decoder/codec/summary"}
 _ATTRIBUTES = {"common/codec/attributes", "common/codec/attributes/recon"}
-_PARSE = {"decoder/codec/parse", "decoder/codec/parse/sequence"}
+_DECODER_KIND = "decoder/codec/kinds/{}"
+_DECODER_KINDS = _of_kinds(_DECODER_KIND)
+_PARSE_KINDS = _of_kinds(_DECODER_KIND + "/parse")
+_PARSE = {"decoder/codec/parse", "decoder/codec/parse/sequence"} | _PARSE_KINDS
 _PUBLIC_DECODER = {"decoder"}
 _CHOICES = {"encoder/codec", "encoder/meshes/frame_source.h"}
 _ENCODER = _GOFS | _RECON | _CHOICES | {"encoder/codec/math", "encoder/codec/rest",
@@ -80,18 +86,32 @@ ROOMS = {
     "decoder/codec/parse": _GOFS | {"common/codec/kinds", "decoder/codec/slice_cut.h"},
     "decoder/codec/parse/sequence": _GOFS | {"decoder/codec/parse"},
     "decoder/codec/parse/attributes": _MESH | {"common/codec/attributes", "decoder/codec/parse"},
-    "decoder/codec/units": _GOFS | _PARSE | {"common/codec/kinds", "decoder/codec"},
-    # Structures to positions.
-    # It parses, too, where frames are decoded before their GOF has been read.
-    "decoder/codec/gofs": _GOFS | _RECON | {"common/codec/kinds", "decoder/codec",
-                                            "decoder/codec/parse", "decoder/codec/units"},
+    **dict.fromkeys(_PARSE_KINDS, _GOFS | {"common/codec/kinds", "decoder/codec/parse",
+                                           "decoder/codec/slice_cut.h"}),
+    # Structures to positions: the interface, and what GOFs share.
+    "decoder/codec/recon": _GOFS | _RECON,
+    # What programs show of GOFs, whatever their kind.
+    "decoder/codec/summary": _GOFS | {"common/codec/kinds", "decoder/codec/slice_cut.h"},
+    # How each kind is decoded, and the table of them.
+    **{kind: _KIND_DECODER | {kind + "/parse"} for kind in _DECODER_KINDS},
+    "decoder/codec/kinds": _GOFS | _DECODER_KINDS | {"common/codec/kinds"},
+    # Units to access units. The table of kinds is open to it; it calls their parsers alone.
+    "decoder/codec/units": _GOFS | _PARSE | {
+        "common/codec/kinds", "decoder/codec", "decoder/codec/kinds",
+        "decoder/codec/kinds/skinned/rig_figures.h", "decoder/codec/summary"},
+    # Access units to frames. Parses, too, where frames are decoded before the end of their GOF.
+    "decoder/codec/gofs": _GOFS | _RECON | {
+        "common/codec/kinds", "decoder/codec", "decoder/codec/kinds",
+        "decoder/codec/kinds/inter/parse", "decoder/codec/parse", "decoder/codec/recon",
+        "decoder/codec/units"},
     "decoder": _GOFS | _ATTRIBUTES | {
         "common/files", "common/parallel", "decoder/codec", "decoder/codec/gofs",
         "decoder/codec/parse/attributes", "decoder/codec/parse/sequence/parse_asset.h",
         "decoder/codec/units"},
     "decoder/codec/extract": _GOFS | _PARSE | _PUBLIC_DECODER | {
         "common/codec/kinds", "common/json", "decoder/codec", "decoder/codec/gofs",
-        "decoder/codec/parse/attributes", "decoder/codec/units"},
+        "decoder/codec/parse/attributes", "decoder/codec/recon", "decoder/codec/summary",
+        "decoder/codec/units"},
     "decoder/verify": {"common/verify", "decoder/codec/units"} | _PUBLIC_DECODER,
     # Attributes and vertices as programs draw them.
     "decoder/surface": _ATTRIBUTES | {"common", "common/memory", "common/codec/mesh",
@@ -102,7 +122,7 @@ ROOMS = {
     "decoder/meshes/gltf": _MESH_FILES | {"common/codec/attributes", "common/parallel",
                                           "decoder/meshes", "decoder/surface"},
     "decoder/report": _GOFS | _PUBLIC_DECODER | {
-        "common/codec/kinds", "common/codec/kinds/skinned/recon/rig_recon.h", "common/json",
+        "common/codec/kinds", "common/json", "decoder/codec/kinds", "decoder/codec/summary",
         "decoder/codec/units", "decoder/meshes"},
     "decoder/c_api": _PUBLIC_DECODER | {
         "common/c_api", "common/codec/mesh", "common/files/clip_time.h",
@@ -204,9 +224,10 @@ CLOSED = {room: {"common/codec/mesh/vertex_layers.h"} for room in _PARSE}
 # A room must not call by name the functions that headers of these folders and files declare,
 # whichever header makes them visible.
 NOT_CALLED = {room: (*sorted(_of_kinds(_KIND + "/recon")), "common/codec/mesh_prediction",
-                     "common/codec/kernels", "decoder/codec/gofs",
-                     "common/codec/mesh/vertex_layers.h", "common/files") for room in _PARSE}
-NOT_CALLED |= {room: ("common/files",) for room in ("decoder/codec/gofs", "decoder/codec/units")}
+                     "common/codec/kernels", "decoder/codec/gofs", "decoder/codec/recon",
+                     "common/codec/mesh/vertex_layers.h", "common/files")
+              for room in _PARSE | {"decoder/codec/units"}}
+NOT_CALLED["decoder/codec/gofs"] = ("common/files",)
 # May include both sides; nothing includes it.
 BOTH_SIDES = "conformance"
 
@@ -217,8 +238,7 @@ MAY_CATCH = {"common/c_api", "common/files", "common/parallel", "common/cli", "d
              "decoder/codec/gofs/async.cpp", "common/memory/owned.cpp"}
 
 # Folders without floating point, with all folders in them except FILES and SURFACE.
-INTEGER_FOLDERS = ("common", "decoder/codec/parse", "decoder/codec/gofs", "decoder/codec/units",
-                   "decoder/codec/extract")
+INTEGER_FOLDERS = ("common", "decoder/codec")
 FILES = "common/files"
 SURFACE = "common/surface"
 

@@ -163,6 +163,7 @@ class Clauses(TreeTest):
     def run_on(self, code, *expected, spec=SPEC, parser=PARSER):
         tree = {"spec/06-syntax.md": spec, "common/a.h": code,
                 "decoder/codec/parse/parse_a.cpp": parser,
+                "decoder/codec/kinds/b/parse/parse_b.cpp": "",
                 "decoder/codec/units/unit_reader.cpp": ""}
         (self.assert_one if expected else self.assert_clean)(check_clauses.check, tree, *expected)
 
@@ -172,6 +173,7 @@ class Clauses(TreeTest):
     def test_missing_parsers_are_an_error(self):
         found = self.complaints(check_clauses.check, {"spec/06-syntax.md": SPEC})
         self.assertIn("decoder/codec/parse/ has no sources", found)
+        self.assertIn("decoder/codec/kinds/*/parse/ has no sources", found)
 
     def test_correct_citations_pass(self):
         self.run_on("// 6.3.1 Sequence header syntax: why\n// 6.3.1 sequence_header( )\n"
@@ -217,7 +219,7 @@ class Clauses(TreeTest):
         found = self.complaints(check_clauses.check, {
             "spec/06-syntax.md": SPEC, "decoder/codec/parse/parse_a.cpp": PARSER,
             "decoder/codec/units/unit_reader.cpp": "",
-            "decoder/codec/parse/parse_b.h": 'r.flag("lcf_flag");\n',
+            "decoder/codec/kinds/b/parse/parse_b.h": 'r.flag("lcf_flag");\n',
             "decoder/codec/parse/parse_b_test.cpp": 'expect("lcf_flag");\n'})
         self.assertEqual(len(found), 1, found)
         self.assertIn("2 parsers", found[0])

@@ -106,20 +106,24 @@ class Layers(RealTree):
     def test_parsing_includes_nothing_that_reconstructs(self):
         for header in ("common/codec/kinds/skinned/recon/skinned_recon.h",
                        "common/codec/kernels/kernels.h", "common/codec/kinds/cluster/recon/lcf.h",
-                       "decoder/codec/gofs/gof_recon.h",
+                       "decoder/codec/recon/gof_recon.h",
                        "common/codec/mesh_prediction/geometry_weights.h",
-                       "common/codec/mesh/vertex_layers.h", "decoder/codec/units/unit_reader.h"):
+                       "common/codec/mesh/vertex_layers.h", "decoder/codec/units/unit_reader.h",
+                       "decoder/codec/kinds/skinned/skinned_decoder.h"):
             with self.subTest(header=header):
-                self.include("decoder/codec/parse/parse_skinned_gof.cpp", f'#include "{header}"',
-                             header)
+                self.include("decoder/codec/kinds/skinned/parse/parse_skinned_gof.cpp",
+                             f'#include "{header}"', header)
 
     def test_parsing_calls_nothing_that_reconstructs(self):
-        for call in ("make_layers(n, triangles);", "make_recon(unit, context);",
-                     "complete_influences(mesh, gof);", "make_lcf(a, b, c);"):
-            with self.subTest(call=call):
-                self.complaint(check_layers.check, "decoder/codec/parse/access_unit_parser.cpp",
-                               lambda text, call=call: text + f"void f() {{ {call} }}\n",
-                               "decoder/codec/parse/access_unit_parser.cpp", "must not call")
+        for name in ("decoder/codec/parse/parse_gof_header.cpp",
+                     "decoder/codec/kinds/inter/parse/parse_inter_gof.cpp",
+                     "decoder/codec/units/access_unit_parser.cpp"):
+            for call in ("make_layers(n, triangles);", "decoder.make_recon(gof, context);",
+                         "complete_influences(mesh, gof);", "make_lcf(a, b, c);"):
+                with self.subTest(name=name, call=call):
+                    self.complaint(check_layers.check, name,
+                                   lambda text, call=call: text + f"void f() {{ {call} }}\n",
+                                   name, "must not call")
 
     def test_files_of_meshes_know_nothing_of_coding(self):
         self.include("encoder/meshes/obj/obj_reader.cpp",
@@ -138,7 +142,7 @@ class Layers(RealTree):
                 self.include(name, header, "must not include")
         self.include("common/files/output_file.h", '#include "decoder/codec/slice_cut.h"',
                      "must not include")
-        for name in ("decoder/codec/parse/access_unit_parser.cpp",
+        for name in ("decoder/codec/units/access_unit_parser.cpp",
                      "decoder/codec/gofs/hash_check.cpp", "decoder/codec/units/stream_reader.cpp"):
             with self.subTest(name=name):
                 self.complaint(check_layers.check, name, lambda text: text + (
@@ -263,6 +267,7 @@ class Float(RealTree):
                      "common/codec/kinds/skinned/recon/skinned_recon.h",
                      "common/codec/bits/int_math.h", "decoder/codec/parse/section_reader.h",
                      "decoder/codec/gofs/hash_check.cpp", "decoder/codec/units/stream_reader.cpp",
+                     "decoder/codec/kinds/inter/parse/parse_inter_gof.cpp",
                      "decoder/codec/extract/sub_stream_extractor.cpp"):
             with self.subTest(name=name):
                 self.plant(name, "double x;")
@@ -283,9 +288,9 @@ class Float(RealTree):
                 self.assertEqual(check_float.check(self.root)[0], [])
 
     def test_an_empty_folder_is_reported(self):
-        with self.without("decoder/codec/units"):
+        with self.without("decoder/codec"):
             found = check_float.check(self.root)[0]
-        self.assertEqual(found, ["decoder/codec/units/ has no sources"])
+        self.assertEqual(found, ["decoder/codec/ has no sources"])
 
 
 class HeadersFirst(RealTree):

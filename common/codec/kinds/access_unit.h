@@ -1,6 +1,6 @@
 // Parsed GOF of a stream: the GOF unit, its slice or frame units, and its hash. Made by
-// AccessUnitParser (decoder/codec/parse), inspected by all programs, decoded by make_recon()
-// (decoder/codec/gofs/gof_recon.h).
+// AccessUnitParser (decoder/codec/units), inspected by all programs, decoded by make_recon()
+// (decoder/codec/gofs/make_recon.h).
 #pragma once
 
 #include <cstdint>
@@ -31,9 +31,6 @@ struct SliceEntry {
   bool is_gof_end = false;       // the GOF ends before that frame; the unit has no residuals
 };
 
-// 7.14.2: frame_crc of each frame of a GOF that has one; empty if none has.
-using FrameCrcs = Vector<std::optional<FrameCrc>>;
-
 struct AccessUnit {
   AnyGof gof;
   Vector<SliceEntry> slices;    // in the order of the stream
@@ -43,12 +40,13 @@ struct AccessUnit {
   // not match the remaining positions.
   bool is_cut = false;
 
+  // Returns the hashes in the units of the GOF; empty in kinds that have none there.
   FrameCrcs frame_crcs() const {
-    FrameCrcs crcs;
-    const auto* const gof_of_frames = std::get_if<InterGof>(&gof);
-    if (gof_of_frames == nullptr || !gof_of_frames->frame_hash_flag) return crcs;
-    for (const InterFrame& frame : *gof_of_frames->frames) crcs.push_back(frame.frame_crc);
-    return crcs;
+    const auto crcs_of = [](const auto& g) -> FrameCrcs {
+      if constexpr (requires { g.frame_crcs(); }) return g.frame_crcs();
+      return {};
+    };
+    return std::visit(crcs_of, gof);
   }
   const GofHeader& header() const {
     return std::visit([](const auto& g) -> const GofHeader& { return g; }, gof);

@@ -5,7 +5,7 @@
 
 #include "common/codec/bits/crc32.h"
 #include "common/json/json_text.h"
-#include "decoder/codec/gofs/gof_recon.h"
+#include "decoder/codec/gofs/make_recon.h"
 #include "decoder/codec/parse/attributes/parse_attributes.h"
 #include "decoder/codec/parse/sequence/parse_metadata.h"
 

@@ -9,13 +9,13 @@
 
 #include "common/codec/syntax/write_units.h"
 #include "common/result.h"
-#include "decoder/codec/gofs/rig_recons.h"
+#include "decoder/codec/recon/rig_recons.h"
 #include "decoder/codec/slice_cut.h"
 #include "decoder/codec/units/access_unit_reader.h"
 #include "decoder/codec/units/byte_source.h"
-#include "decoder/codec/units/gof_summary.h"
 #include "decoder/codec/units/stream_reader.h"
 #include "decoder/codec/units/stream_rigs.h"
+#include "decoder/codec/units/stream_summary.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {

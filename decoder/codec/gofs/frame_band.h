@@ -6,7 +6,7 @@
 #include <span>
 
 #include "common/memory/owned.h"
-#include "decoder/codec/gofs/gof_recon.h"
+#include "decoder/codec/recon/gof_recon.h"
 
 namespace rlpc {
 

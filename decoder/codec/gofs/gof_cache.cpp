@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "decoder/codec/parse/memory_estimate.h"
+#include "decoder/codec/parse/rig_memory.h"
 
 namespace rlpc {
 namespace {

@@ -13,8 +13,8 @@
 #include "decoder/codec/gofs/gof_cache.h"
 #include "decoder/codec/gofs/live_gof.h"
 #include "decoder/codec/gofs/prefetch.h"
-#include "decoder/codec/gofs/rig_recons.h"
 #include "decoder/codec/options.h"
+#include "decoder/codec/recon/rig_recons.h"
 #include "decoder/codec/units/stream_reader.h"
 
 namespace rlpc {

@@ -9,7 +9,7 @@
 #include "common/codec/kinds/inter/recon/inter_recon.h"
 #include "common/codec/syntax/stream_context.h"
 #include "common/memory/owned.h"
-#include "decoder/codec/parse/parse_inter_gof.h"
+#include "decoder/codec/kinds/inter/parse/parse_inter_gof.h"
 #include "decoder/codec/units/stream_reader.h"
 #include "decoder/codec/units/unit_cursor.h"
 

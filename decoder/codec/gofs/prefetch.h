@@ -13,7 +13,7 @@
 #include "common/memory/owned.h"
 #include "common/parallel/for_each.h"
 #include "decoder/codec/gofs/prepared_gof.h"
-#include "decoder/codec/gofs/rig_recons.h"
+#include "decoder/codec/recon/rig_recons.h"
 #include "decoder/codec/units/stream_reader.h"
 
 namespace rlpc {

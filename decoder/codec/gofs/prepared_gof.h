@@ -7,8 +7,8 @@
 
 #include "common/codec/kinds/access_unit.h"
 #include "common/codec/syntax/stream_context.h"
-#include "decoder/codec/gofs/gof_recon.h"
-#include "decoder/codec/gofs/rig_recons.h"
+#include "decoder/codec/recon/gof_recon.h"
+#include "decoder/codec/recon/rig_recons.h"
 
 namespace rlpc {
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "common/memory/owned.h"
-#include "decoder/codec/parse/memory_estimate.h"
 #include "decoder/codec/parse/parse_gof_header.h"
+#include "decoder/codec/parse/rig_memory.h"
 #include "decoder/codec/units/unit_cursor.h"
 
 namespace rlpc {

@@ -10,10 +10,10 @@
 #include "common/codec/syntax/stream_context.h"
 #include "common/memory/owned.h"
 #include "common/result.h"
+#include "decoder/codec/kinds/skinned/parse/rig_parser.h"
 #include "decoder/codec/options.h"
-#include "decoder/codec/parse/access_unit_parser.h"
 #include "decoder/codec/parse/memory_limit.h"
-#include "decoder/codec/parse/rig_parser.h"
+#include "decoder/codec/units/access_unit_parser.h"
 #include "decoder/codec/units/unit_cursor.h"
 #include "decoder/codec/units/unit_reader.h"
 

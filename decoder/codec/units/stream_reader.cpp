@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "common/codec/syntax/stream_format.h"
+#include "decoder/codec/kinds/inter/parse/parse_inter_gof.h"
 #include "decoder/codec/parse/memory_estimate.h"
 #include "decoder/codec/parse/parse_gof_header.h"
-#include "decoder/codec/parse/parse_inter_gof.h"
 #include "decoder/codec/parse/sequence/parse_clip_table.h"
 #include "decoder/codec/parse/sequence/parse_connectivity.h"
 #include "decoder/codec/parse/sequence/parse_end_of_sequence.h"

@@ -8,7 +8,7 @@
 #include "common/codec/bits/bit_reader.h"
 #include "common/codec/syntax/stream_format.h"
 #include "common/memory/owned.h"
-#include "decoder/codec/parse/parse_skinned_gof.h"
+#include "decoder/codec/kinds/skinned/parse/parse_skinned_gof.h"
 #include "decoder/codec/units/unit_cursor.h"
 
 namespace rlpc {

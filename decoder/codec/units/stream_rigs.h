@@ -10,7 +10,7 @@
 #include "common/codec/kinds/skinned/rig_slots.h"
 #include "common/memory/owned.h"
 #include "common/result.h"
-#include "decoder/codec/parse/rig_parser.h"
+#include "decoder/codec/kinds/skinned/parse/rig_parser.h"
 #include "decoder/codec/parse/sequence/parse_gof_index.h"
 #include "decoder/codec/units/access_unit_reader.h"
 #include "decoder/codec/units/unit_reader.h"

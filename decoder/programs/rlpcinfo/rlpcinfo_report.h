@@ -8,7 +8,7 @@
 #include "common/codec/mesh/clip.h"
 #include "common/codec/mesh/coarse_mesh.h"
 #include "common/codec/syntax/sequence_header.h"
-#include "decoder/codec/units/gof_summary.h"
+#include "decoder/codec/units/stream_summary.h"
 #include "decoder/programs/rlpcinfo/listed_attributes.h"
 #include "decoder/report/bit_counter.h"
 #include "decoder/report/gof_pictures.h"

@@ -10,6 +10,7 @@
 #include "common/codec/kinds/inter/patch_motion.h"
 #include "common/codec/mesh/weight_settings.h"
 #include "common/codec/rest/rest_shape.h"
+#include "common/codec/syntax/gof_hash.h"
 #include "common/codec/syntax/gof_header.h"
 #include "common/memory/owned.h"
 
@@ -18,14 +19,6 @@ namespace rlpc {
 inline constexpr std::uint32_t kMaxInterStep = 1U << 16;  // 1/16 grid units
 inline constexpr std::uint32_t kExactInterStep = 16;      // one grid unit
 inline constexpr std::uint32_t kMaxInterExpected = 1023;  // 9.8.6, 1/16
-
-// frame_crc, and its place in the stream.
-struct FrameCrc {
-  std::uint32_t crc = 0;
-  std::uint64_t bit_pos = 0;
-
-  bool operator==(const FrameCrc& other) const { return crc == other.crc; }
-};
 
 // 6.14.2 frame_unit( ): the residuals of a frame.
 struct InterFrame {
@@ -66,6 +59,12 @@ struct InterSettings {
 struct InterGof : GofHeader, InterSettings {
   std::shared_ptr<const Vector<InterFrame>> frames;  // [num_frames]; set once parsed
 
+  FrameCrcs frame_crcs() const {
+    FrameCrcs crcs;
+    if (!frame_hash_flag) return crcs;
+    for (const InterFrame& frame : *frames) crcs.push_back(frame.frame_crc);
+    return crcs;
+  }
   bool operator==(const InterGof& other) const {
     return static_cast<const GofHeader&>(*this) == other &&
            static_cast<const InterSettings&>(*this) == other && *frames == *other.frames;

@@ -1,0 +1,407 @@
+#include "decoder/codec/kinds/inter/parse/parse_inter_gof.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "common/memory/owned.h"
+#include "decoder/codec/kinds/inter/parse/inter_memory.h"
+#include "decoder/codec/kinds/inter/parse/parse_frame_pattern.h"
+#include "decoder/codec/parse/parse_cluster_map.h"
+#include "decoder/codec/parse/parse_layers.h"
+#include "decoder/codec/parse/parse_rest_residuals.h"
+#include "decoder/codec/parse/rig_memory.h"
+#include "decoder/codec/parse/section_reader.h"
+
+namespace rlpc {
+
+bool InterGofParser::has_memory(BitReader& r, std::uint64_t more, const char* structure,
+                                std::uint64_t at) {
+  const std::uint64_t needed_bytes = memory_.bytes_in_use + memory_bytes_ + more;
+  if (needed_bytes <= memory_.max_bytes) return true;
+  r.fail(Errc::kLimitExceeded, "", structure, at, needed_bytes);
+  return false;
+}
+
+// 6.14 frames_of_gof( ): the settings of weights
+void InterGofParser::weights(BitReader& r) {
+  gof_.weights.damping_log2 = static_cast<int>(r.u(4, "damping_log2"));
+  gof_.weights.outer_weight = static_cast<int>(r.u(4, "outer_weight"));
+  gof_.weights.outer_scale = static_cast<int>(r.u(4, "outer_scale"));
+  const std::uint64_t at = r.bit_pos();
+  gof_.learning_flag = r.flag("learning_flag");
+  if (!gof_.learning_flag) return;
+  const std::uint64_t vertices =
+      std::uint64_t{header_.num_vertices} * gof_.pattern.temporal_layers;
+  if (!r.error() && vertices > header_.level().max_learning_vertices) {
+    r.fail(Errc::kInvalid, "R-LVL-10", "learning_flag", at);
+  }
+  gof_.prime_log2 = static_cast<int>(r.u(4, "prime_log2"));
+}
+
+// 6.14 frames_of_gof( )
+Result<bool> InterGofParser::gof(BitReader& r, const GofHeader& gof_header) {
+  const std::uint64_t at = r.bit_pos();
+  static_cast<GofHeader&>(gof_) = gof_header;
+  gof_.pattern = parse_frame_pattern(r);
+  if (r.error()) return *r.error();
+  gof_.exact_flag = r.flag("exact_flag");
+  gof_.step.assign(gof_.pattern.num_depths(), kExactInterStep);
+  for (std::uint32_t& step : gof_.step) {
+    if (gof_.exact_flag) break;
+    step = r.ue("frame_step_minus1", {0, std::int64_t{kMaxInterStep} - 1}, "R-FRM-01") + 1;
+  }
+  weights(r);
+  gof_.frame_hash_flag = r.flag("frame_hash_flag");
+  const std::uint64_t values = 3 * std::uint64_t{header_.num_vertices};
+  const auto most = static_cast<std::int64_t>(header_.level().max_gof_factors / values);
+  gof_.max_earlier_distance = r.ue("max_earlier_distance", {0, most}, "R-LVL-05");
+  const auto groups = parse_layer_groups(r, mesh_.num_layers());
+  if (!groups.empty()) gof_.layer_group_size = groups;
+  gof_.layer_step.assign(mesh_.num_layers(), kMaxLayerStep);
+  if (!gof_.exact_flag) parse_layer_steps(r, gof_.layer_step);
+  if (gof_.layer_group_size.size() == 1) gof_.rest = parse_rest_settings(r, gof_.exact_flag);
+  gof_.num_patches =
+      r.ue("num_patches", {0, std::int64_t{header_.level().max_clusters}}, "R-LVL-06");
+  r.byte_alignment();
+  if (gof_.num_patches == 0) r.expect_end();
+  if (r.error()) return *r.error();
+  memory_bytes_ = memory_of_frames(header_.num_vertices, gof_.num_frames, gof_);
+  if (!has_memory(r, 0, "frames_of_gof", at)) return *r.error();
+  if (gof_.num_patches > 0) patch_map(r);
+  if (r.error()) return *r.error();
+  frames_.resize(gof_.num_frames);
+  contexts_.emplace(mesh_, gof_.layer_group_size.size(), gof_.pattern.num_depths());
+  order_.emplace(gof_.pattern, gof_.num_frames);
+  next_place_of_layer_.assign(gof_.pattern.temporal_layers, 0);
+  first_lacking_.assign(gof_.pattern.temporal_layers,
+                        Vector<std::uint32_t>(gof_.layer_group_size.size()));
+  end_layer_group_ = layer_groups_that_stay(gof_.layer_group_size, cut_);
+  end_temporal_layer_ = std::min(cut_.max_temporal_layers, gof_.pattern.temporal_layers);
+  return true;
+}
+
+Result<bool> InterGofParser::gof(BitReader& r, const GofHeader& header, const RigSlots& rigs) {
+  memory_.bytes_in_use += memory_of_rigs(rigs);
+  return gof(r, header);
+}
+
+// 6.14.3 patch_map( )
+void InterGofParser::patch_map(BitReader& r) {
+  SectionReader section(r, "patch_map");
+  ClusterMapModels models;
+  gof_.patch_of_vertex.assign(header_.num_vertices, 0);
+  parse_cluster_map(section, mesh_.topology(), models, gof_.num_patches, gof_.patch_of_vertex);
+  section.finish();
+  patch_contexts_.emplace(gof_.num_patches, gof_.pattern.num_depths());
+}
+
+FrameUnitStart parse_frame_unit_start(BitReader& r, const SequenceHeader& header,
+                                      std::uint32_t num_frames) {
+  FrameUnitStart start;
+  start.frame_idx = r.ue("frame_idx", {0, std::int64_t{num_frames} - 1}, "R-FRM-02");
+  if (header.open_end_flag) start.gof_end_flag = r.flag("gof_end_flag");
+  return start;
+}
+
+// 6.14.2 frame_unit( )
+Result<bool> InterGofParser::frame(BitReader& r, std::uint64_t unit_bit_pos) {
+  last_unit_.reset();
+  const FrameUnitStart start = parse_frame_unit_start(r, header_, gof_.num_frames);
+  if (r.error()) return *r.error();
+  SliceEntry unit;
+  unit.frame_idx = start.frame_idx;
+  if (start.gof_end_flag) {
+    end_gof(r, start.frame_idx, unit_bit_pos);
+    unit.is_gof_end = true;
+    last_unit_ = unit;
+  } else {
+    frames_of_group(r, unit, unit_bit_pos);
+  }
+  if (r.error()) return *r.error();
+  return true;
+}
+
+Result<bool> InterGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos,
+                                   Vector<SliceEntry>& slices) {
+  if (auto ok = frame(r, unit_bit_pos); !ok) return ok;
+  if (last_unit_) slices.push_back(*last_unit_);
+  return true;
+}
+
+// 6.14.2 gof_end( )
+void InterGofParser::end_gof(BitReader& r, std::uint32_t num_frames,
+                             std::uint64_t unit_bit_pos) {
+  if (num_frames > 0) {
+    FrameOrder order(gof_.pattern, num_frames);
+    if (order.begins_as(*order_, next_place_)) {
+      r.byte_alignment();
+      r.expect_end();
+      if (r.error()) return;
+      gof_.num_frames = num_frames;
+      order_ = std::move(order);
+      frames_.resize(num_frames);
+      for (Vector<std::uint32_t>& places : first_lacking_) std::ranges::fill(places, 0U);
+      return;
+    }
+  }
+  r.fail(Errc::kInvalid, "R-FRM-04", "frame_unit", unit_bit_pos);
+}
+
+// 8.19.1 FindUnitFrames( more )
+Vector<std::uint32_t> InterGofParser::unit_places(const SliceEntry& unit) const {
+  Vector<std::uint32_t> places;
+  for (std::uint32_t place = order_->place_of(unit.frame_idx);
+       place < order_->num_frames() && places.size() < unit.num_frames; ++place) {
+    if (gof_.pattern.temporal_layer((*order_)[place].depth) == unit.temporal_layer_idx) {
+      places.push_back(place);
+    } else if (header_.open_end_flag) {
+      break;
+    }
+  }
+  return places;
+}
+
+std::uint32_t InterGofParser::first_lacking(std::uint32_t layer, std::uint32_t group) {
+  std::uint32_t& place = first_lacking_[layer][group];
+  while (place < order_->num_frames() &&
+         (gof_.pattern.temporal_layer((*order_)[place].depth) != layer ||
+          frame_at(place).layer_groups > group)) {
+    ++place;
+  }
+  return place;
+}
+
+// 8.19.1 FrameMayFollow( )
+bool InterGofParser::may_follow(const SliceEntry& unit, std::span<const std::uint32_t> places) {
+  const std::uint32_t first = places.front();
+  const std::uint32_t last = places.back();
+  const std::uint32_t group = unit.layer_group_idx;
+  const std::uint32_t layer = unit.temporal_layer_idx;
+  const InterFrame& frame = frames_[unit.frame_idx];
+  const std::uint32_t next = header_.open_end_flag ? next_place_ : next_place_of_layer_[layer];
+  if (first + 1 < next || frame.layer_groups != group || frame.repeated) return false;
+  if (first_lacking(layer, group) < first) return false;
+  for (std::uint32_t t = 0; t < layer; ++t) {
+    if (first_lacking(t, group) < last) return false;
+  }
+  next_place_of_layer_[layer] = last + 1;
+  next_place_ = std::max(next_place_, last + 1);
+  return true;
+}
+
+// 6.14.2 frames_of_group( )
+void InterGofParser::frames_of_group(BitReader& r, SliceEntry& unit,
+                                     std::uint64_t unit_bit_pos) {
+  const auto num_groups = static_cast<std::int64_t>(gof_.layer_group_size.size());
+  unit.layer_group_idx = r.ue("layer_group_idx", {0, num_groups - 1}, "R-FRM-02");
+  if (r.error()) return;
+  const std::uint32_t group = unit.layer_group_idx;
+  const std::uint32_t first = order_->place_of(unit.frame_idx);
+  unit.temporal_layer_idx = gof_.pattern.temporal_layer((*order_)[first].depth);
+  Vector<std::uint32_t> places{first};
+  if (num_groups == 1) {
+    const std::uint64_t at = r.bit_pos();
+    const std::int64_t most = std::int64_t{gof_.num_frames} - 1;
+    unit.num_frames = r.ue("unit_frames_minus1", {0, most}, "R-FRM-09") + 1;
+    if (r.error()) return;
+    places = unit_places(unit);
+    if (places.size() < unit.num_frames) {
+      r.fail(Errc::kInvalid, "R-FRM-09", "unit_frames_minus1", at);
+      return;
+    }
+  }
+  if (group >= end_layer_group_ || unit.temporal_layer_idx >= end_temporal_layer_) {
+    is_cut_ = true;
+    return;
+  }
+  if (!may_follow(unit, places)) {
+    r.fail(Errc::kInvalid, "R-FRM-03", "frame_unit", unit_bit_pos);
+    return;
+  }
+  Vector<std::uint32_t> coded;
+  for (const std::uint32_t place : places) {
+    if (frame_start(r, unit, place)) coded.push_back(place);
+    if (r.error()) return;
+  }
+  r.byte_alignment();
+  if (gof_.frame_hash_flag && group + 1 == gof_.layer_group_size.size()) {
+    for (const std::uint32_t place : coded) {
+      const std::uint64_t at = r.bit_pos();
+      frame_at(place).frame_crc = FrameCrc{r.u(32, "frame_crc"), at};
+      if (r.error()) return;
+    }
+  }
+  if (coded.empty()) {
+    r.expect_end();
+  } else if (!r.error()) {
+    frame_section(r, unit, coded);
+  }
+  if (!r.error()) last_unit_ = unit;
+}
+
+// 6.14.2 frame_start( )
+bool InterGofParser::frame_start(BitReader& r, const SliceEntry& unit, std::uint32_t place) {
+  InterFrame& frame = frame_at(place);
+  const bool may_be_earlier =
+      gof_.max_earlier_distance > 0 && unit.layer_group_idx == 0 && place > 0;
+  if (may_be_earlier && r.flag("earlier_flag")) earlier_frame(r, place);
+  if (r.error()) return false;
+  if (!frame.repeated) {
+    frame.layer_groups = unit.layer_group_idx + 1;
+    return true;
+  }
+  // A repetition has the same layer groups.
+  frame.layer_groups = frames_[*frame.repeated].layer_groups;
+  return false;
+}
+
+// 6.14.2 earlier_frame( )
+void InterGofParser::earlier_frame(BitReader& r, std::uint32_t place) {
+  const std::uint64_t at = r.bit_pos();
+  const std::uint32_t distance =
+      r.ue("earlier_distance_minus1", {0, std::int64_t{gof_.max_earlier_distance} - 1},
+           "R-FRM-08") +
+      1;
+  if (r.error()) return;
+  const FramePattern& pattern = gof_.pattern;
+  const FramePlace* const earlier = distance > place ? nullptr : &(*order_)[place - distance];
+  if (earlier == nullptr ||
+      pattern.temporal_layer(earlier->depth) > pattern.temporal_layer((*order_)[place].depth)) {
+    r.fail(Errc::kInvalid, "R-FRM-08", "earlier_distance_minus1", at);
+  }
+  const bool is_repeated = r.flag("repeat_flag");
+  if (r.error()) return;
+  InterFrame& frame = frame_at(place);
+  (is_repeated ? frame.repeated : frame.reference) = earlier->frame;
+}
+
+std::uint32_t InterGofParser::complete_places() const {
+  if (next_place_ == 0) return 0;
+  const InterFrame& last = frames_[(*order_)[next_place_ - 1].frame];
+  const bool is_complete = last.layer_groups == gof_.layer_group_size.size() || last.repeated;
+  return is_complete ? next_place_ : next_place_ - 1;
+}
+
+InterFrame InterGofParser::take_frame(std::uint32_t frame) {
+  InterFrame& kept = frames_[frame];
+  if (kept.layer_groups > 0 && !kept.repeated) {
+    memory_bytes_ -=
+        memory_of_frame(header_.num_vertices, kept.residual.num_large(), kept.patches.size());
+  }
+  InterFrame taken = std::exchange(kept, {});
+  kept.layer_groups = taken.layer_groups;
+  kept.repeated = taken.repeated;
+  return taken;
+}
+
+namespace {
+
+// Context of one vertex, for SectionReader::residuals().
+struct OfVertex {
+  InterContexts& contexts;
+  std::uint32_t expected() const { return contexts.expected(); }
+  ResidualModels& models() const { return contexts.models(); }
+  void update(std::int32_t residual) const { contexts.update(residual); }
+};
+// Context of the motion of one patch.
+struct OfPatch {
+  PatchContexts& contexts;
+  std::size_t value = 0;
+  std::uint32_t expected() const { return contexts.expected(value); }
+  ResidualModels& models() const { return contexts.models(value); }
+  void update(std::int32_t residual) { contexts.update(value++, residual); }
+};
+
+}  // namespace
+
+// 6.14.3 patch_motions( )
+void InterGofParser::patch_motions(SectionReader& section, InterFrame& frame) {
+  frame.patches.resize(gof_.num_patches);
+  for (std::size_t p = 0; p < frame.patches.size() && !section.failed(); ++p) {
+    PatchMotion& patch = frame.patches[p];
+    patch_contexts_->start(p);
+    patch.mode = static_cast<PatchMode>(
+        section.truncated_unary(patch_contexts_->mode_models(), "patch_mode"));
+    patch_contexts_->set_mode(patch.mode);
+    if (patch.mode != PatchMode::kNeighbours) {
+      section.residuals(OfPatch{*patch_contexts_}, patch.residual, "patch_residual");
+    }
+    section.check_overrun("patch_mode");
+  }
+}
+
+// 6.14.2 frame_section( )
+void InterGofParser::frame_section(BitReader& r, const SliceEntry& unit,
+                                   std::span<const std::uint32_t> places) {
+  const std::uint64_t num_vertices = header_.num_vertices;
+  const std::uint64_t at = r.bit_pos();
+  SectionReader section(r, "frame_section");
+  contexts_->start_group(unit.layer_group_idx);
+  for (const std::uint32_t place : places) {
+    InterFrame& frame = frame_at(place);
+    const std::uint32_t num_patches = place > 0 ? gof_.num_patches : 0;
+    if (unit.layer_group_idx == 0) {
+      const std::uint64_t most = memory_of_frame(num_vertices, 3 * num_vertices, num_patches);
+      if (!has_memory(r, most + r.remaining_bytes().size(), "frame_section", at)) return;
+      frame.residual = CompactResiduals(3 * std::size_t{header_.num_vertices});
+      frame.expected.assign(header_.num_vertices, 0);
+      contexts_->start_frame(place, (*order_)[place].depth);
+      if (num_patches > 0) {
+        patch_contexts_->start_frame((*order_)[place].depth);
+        patch_motions(section, frame);
+      }
+      memory_bytes_ += memory_of_frame(num_vertices, 0, num_patches);
+    }
+    const std::uint64_t large_before = frame.residual.num_large();
+    if (place == 0 && gof_.rest.order_flag) {
+      positions_in_order(section, frame);
+    } else {
+      frame_residuals(section, unit, place);
+    }
+    if (section.failed()) return;
+    frame.residual.sort();
+    memory_bytes_ += memory_of_frame(0, frame.residual.num_large() - large_before, 0);
+  }
+  section.finish();
+}
+
+// 6.14.2 positions_in_order( )
+void InterGofParser::positions_in_order(SectionReader& section, InterFrame& frame) {
+  Vector<std::int32_t> residuals(frame.residual.size());
+  if (gof_.rest.counterparts_flag) frame.counterparts.resize(header_.num_vertices);
+  parse_rest_residuals(section, mesh_.rest_order(), residuals, frame.counterparts);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (residuals[i] != 0) frame.residual.set(i, residuals[i]);
+  }
+}
+
+// 6.14.2 residuals_of_frame( )
+void InterGofParser::frame_residuals(SectionReader& section, const SliceEntry& unit,
+                                     std::uint32_t place) {
+  InterFrame& frame = frame_at(place);
+  std::uint32_t first = 0;
+  for (std::uint32_t j = 0; j < unit.layer_group_idx; ++j) first += gof_.layer_group_size[j];
+  const std::uint32_t end = first + gof_.layer_group_size[unit.layer_group_idx];
+  for (const std::uint32_t v : mesh_.vertices_of_layers(first, end)) {
+    if (section.failed()) return;
+    if (mode_of(frame.patches, gof_.patch_of_vertex, v) == PatchMode::kAlone) continue;
+    contexts_->start(v);
+    frame.expected[v] = contexts_->frame_expected();
+    std::array<std::int32_t, 3> residuals{};
+    section.residuals(OfVertex{*contexts_}, residuals, "frame_residual");
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (residuals[c] != 0) frame.residual.set(3 * std::size_t{v} + c, residuals[c]);
+    }
+    section.check_overrun("frame_residual");
+  }
+}
+
+InterGof InterGofParser::finish() {
+  gof_.frames = make_shared_owned<const Vector<InterFrame>>(std::move(frames_));
+  return std::move(gof_);
+}
+
+}  // namespace rlpc
