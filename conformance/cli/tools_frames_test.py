@@ -211,7 +211,7 @@ class Frames(ToolsTest):
     def test_settings_that_contradict(self):
         for options, words in (
                 (("--gof-kind", "inter"), "need --profile high"),
-                (("--profile", "baseline", "--gof-kind", "skinned"), "has no bones"),
+                (("--profile", "baseline", "--gof-kind", "skinned"), "need --profile main or high"),
                 (("--profile", "high", "--gof-kind", "inter", "--bones", 3), "no effect"),
                 (("--profile", "high", "--gof-kind", "skinned", "--frame-weights", "geometry"),
                  "need --profile high and --gof-kind inter"),

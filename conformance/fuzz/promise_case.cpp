@@ -6,6 +6,8 @@
 #include <random>
 #include <utility>
 
+#include "encoder/codec/kind_choices.h"
+
 namespace rlpc {
 namespace {
 
@@ -215,11 +217,9 @@ void CaseMaker::make_high() {
     s.low_delay = true;
     if (chance(2)) s.inter.pattern.emplace().kind = FramePattern::kFirst;
   } else if (!exact && chance(2)) {
-    constexpr KindChoice kChoices[] = {KindChoice::kCluster, KindChoice::kSkinned,
-                                       KindChoice::kInter};
-    s.kinds = kChoices[below(3)];
+    s.kind = kKindChoices[below(kNumKindChoices)];
   }
-  if (s.usable_kinds() == KindChoice::kInter) {
+  if (s.usable_kind() == GofKind::kInter) {
     if (chance(2)) s.inter.patches = below(9);
     if (chance(3)) s.inter.weights = static_cast<InterWeights>(below(3));
     if (chance(3)) s.inter.rest = static_cast<RestTools>(below(3));

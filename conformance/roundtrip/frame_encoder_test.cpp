@@ -194,9 +194,11 @@ Encoded encode_open_ended(FrameSource& source, const EncoderSettings& settings) 
 // GOFs may be of any kind; the last is shorter.
 TEST(FrameEncoder, WithoutANumberOfFrames) {
   MemoryFrames source = bending_tube(80, 50);
-  for (const KindChoice kinds : {KindChoice::kAuto, KindChoice::kCluster, KindChoice::kInter}) {
+  for (const std::optional<GofKind> kind :
+       {std::optional<GofKind>(), std::optional(GofKind::kCluster),
+        std::optional(GofKind::kInter)}) {
     EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 20);
-    settings.kinds = kinds;
+    settings.kind = kind;
     const auto encoded = encode_open_ended(source, settings);
     EXPECT_TRUE(encoded.report.target_met);
     EXPECT_EQ(encoded.report.num_gofs, 3U);

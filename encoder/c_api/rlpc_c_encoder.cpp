@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/c_api/c_handle.h"
+#include "encoder/codec/kind_choices.h"
 #include "encoder/frame_encoder.h"
 
 // NOLINTNEXTLINE(readability-identifier-naming): its name in C.
@@ -25,6 +26,10 @@ struct rlpc_encoder {
 
 namespace rlpc {
 namespace {
+
+static_assert(kKindChoices[RLPC_GOF_KIND_CLUSTER - 1] == GofKind::kCluster &&
+              kKindChoices[RLPC_GOF_KIND_SKINNED - 1] == GofKind::kSkinned &&
+              kKindChoices[RLPC_GOF_KIND_INTER - 1] == GofKind::kInter);
 
 rlpc_encode_options default_options() {
   const EncoderSettings defaults;
@@ -119,8 +124,8 @@ std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
     default:
       return std::nullopt;
   }
-  if (options.gof_kind > RLPC_GOF_KIND_INTER || options.low_delay > 1) return std::nullopt;
-  settings.kinds = static_cast<KindChoice>(options.gof_kind);
+  if (options.gof_kind > kNumKindChoices || options.low_delay > 1) return std::nullopt;
+  if (options.gof_kind > 0) settings.kind = kKindChoices[options.gof_kind - 1];
   settings.low_delay = options.low_delay != 0;
   settings.target.value = options.target_value;
   settings.gof_frames = options.gof_frames;

@@ -10,6 +10,7 @@
 #include "common/codec/kinds/inter/inter_gof.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "common/codec/mesh/clip.h"
+#include "common/codec/syntax/gof_header.h"
 #include "encoder/codec/attributes/attribute_settings.h"
 #include "encoder/meshes/frame_source.h"
 
@@ -91,10 +92,6 @@ struct MainTools {
   bool operator==(const MainTools&) const = default;
 };
 
-// Kinds of GOF that the encoder chooses from. kAuto: for each GOF, the cheapest that profile
-// and settings allow.
-enum class KindChoice : std::uint8_t { kAuto, kCluster, kSkinned, kInter };
-
 // Weights that predict a vertex of an inter GOF from others: learned from the frames before;
 // derived from the first frame (8.11); or equal for its whole ring, as in Stefanoski et al.
 // 2007.
@@ -158,8 +155,9 @@ struct EncoderSettings {
   std::uint32_t components = 0;
   BaselineTools baseline;  // must be left at its defaults unless profile is kBaseline
   MainTools main;          // must be left at its defaults if profile is kBaseline
-  // kSkinned: Main and High profile. kInter: High profile, with `main` left at its defaults.
-  KindChoice kinds = KindChoice::kAuto;
+  // Kind of all GOFs, one of kKindChoices (kind_choices.h); none: for each GOF, the cheapest
+  // that profile and settings allow. With kInter, `main` must be left at its defaults.
+  std::optional<GofKind> kind;
   // FrameEncoder only: codes and passes on each frame when it is added. High profile; all GOFs
   // are inter GOFs, with each frame predicted from the one before; the target is a KG error, a
   // maximum error or lossless, and is not searched for.
@@ -201,16 +199,17 @@ struct EncoderSettings {
 
   // Number of temporal layers that the stream can be cut to.
   std::uint32_t temporal_layers() const {
-    return usable_kinds() == KindChoice::kInter ? inter.temporal_layers : main.temporal_layers;
+    return usable_kind() == GofKind::kInter ? inter.temporal_layers : main.temporal_layers;
   }
   // Whether the stream gets cut points at which a cut changes the first frame.
   bool has_detail_layers() const {
     return main.component_groups > 1 || main.layer_groups > 1 || inter.layer_groups > 1;
   }
-  // Returns the kinds of GOF that low_delay and the target allow.
-  KindChoice usable_kinds() const {
-    return low_delay || target.kind == Target::kLossless ? KindChoice::kInter : kinds;
+  // Returns the only kind of GOF that low_delay, the target and `kind` allow; none: several.
+  std::optional<GofKind> usable_kind() const {
+    return low_delay || target.kind == Target::kLossless ? GofKind::kInter : kind;
   }
+  bool may_use(GofKind k) const { return usable_kind().value_or(k) == k; }
 };
 
 }  // namespace rlpc

@@ -178,7 +178,7 @@ ROOMS = {
         "common/codec/attributes/attribute_set.h", "common/files", "common/verify",
         "encoder/codec/attributes", "encoder/codec/metrics", "encoder/codec/sequence/choices",
         "encoder/codec/sequence/target", "encoder/meshes"},
-    "encoder/c_api": {"common/c_api", "encoder"},
+    "encoder/c_api": {"common/c_api", "encoder", "encoder/codec/kind_choices.h"},
     # Readers of mesh files: the interface, and what formats share.
     "encoder/meshes": _MESH_FILES | {"common/codec/attributes/attribute_set.h",
                                      "encoder/codec/math/det_math.h",
@@ -212,8 +212,9 @@ ROOMS = {
                             "encoder/meshes/point_cache", "encoder/meshes/rlpd"},
     "encoder/programs/rlpcenc": {
         "common/cli", "common/codec/syntax", "common/files", "common/json", "encoder",
-        "encoder/codec/kinds/inter", "encoder/codec/metrics", "encoder/codec/sequence",
-        "encoder/codec/sequence/target", "encoder/meshes", "encoder/meshes/open"},
+        "encoder/codec/kind_choices.h", "encoder/codec/kinds/inter", "encoder/codec/metrics",
+        "encoder/codec/sequence", "encoder/codec/sequence/target", "encoder/meshes",
+        "encoder/meshes/open"},
     "encoder/testing": _ENCODER | _QUANTISE | _MESH_FILES | {
         "common/testing", "encoder/codec/kinds/skinned", "encoder/codec/partition",
         "encoder/meshes", "encoder/meshes/gltf", "encoder/meshes/open"},

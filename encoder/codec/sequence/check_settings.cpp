@@ -1,5 +1,6 @@
 #include "encoder/codec/sequence/check_settings.h"
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "common/codec/attributes/attribute_set.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "common/codec/syntax/sequence_header.h"
+#include "encoder/codec/kind_choices.h"
 #include "encoder/codec/kinds/inter/check_frame_pattern.h"
 
 namespace rlpc {
@@ -74,6 +76,16 @@ std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
   return std::nullopt;
 }
 
+// Returns the words for a profile and those above it: "main or high".
+std::string profiles_with(std::uint32_t profile_idc) {
+  constexpr std::array<const char*, 3> kWords{"baseline", "main", "high"};
+  std::string words = kWords[profile_idc];
+  for (std::uint32_t p = profile_idc + 1; p < kWords.size(); ++p) {
+    words += std::string(" or ") + kWords[p];
+  }
+  return words;
+}
+
 std::optional<InputError> check_low_delay(const EncoderSettings& s) {
   if (!s.low_delay) return std::nullopt;
   if (s.profile != Profile::kHigh) {
@@ -81,7 +93,7 @@ std::optional<InputError> check_low_delay(const EncoderSettings& s) {
         "low delay needs --profile high (version 1.2, in preparation): use that, or leave out "
         "--low-delay"};
   }
-  if (s.kinds != KindChoice::kAuto && s.kinds != KindChoice::kInter) {
+  if (s.kind.value_or(GofKind::kInter) != GofKind::kInter) {
     return InputError{"low delay needs inter GOFs: leave out --gof-kind"};
   }
   if (s.target.kind == Target::kBpvf) {
@@ -112,46 +124,48 @@ std::optional<InputError> check_pattern(const EncoderSettings& s) {
   return std::nullopt;
 }
 
+std::optional<InputError> check_choice_of_kind(const EncoderSettings& s) {
+  if (!s.kind) return std::nullopt;
+  if (!can_be_chosen(*s.kind)) {
+    return InputError{"shared rigs cannot be chosen: use --gof-kind skinned"};
+  }
+  const KindProperties& kind = properties_of(*s.kind);
+  if (kind.profile_idc <= static_cast<std::uint32_t>(s.profile)) return std::nullopt;
+  return InputError{std::string(kind.name) + " GOFs need --profile " +
+                    profiles_with(kind.profile_idc) + ": use that, or leave out --gof-kind"};
+}
+
 std::optional<InputError> check_kinds(const EncoderSettings& s) {
-  if (s.kinds == KindChoice::kSkinned && s.profile == Profile::kBaseline) {
-    return InputError{
-        "the Baseline profile has no bones: use --profile main or high, or leave "
-        "out --gof-kind"};
-  }
-  if (s.kinds == KindChoice::kInter && s.profile != Profile::kHigh) {
-    return InputError{"inter GOFs need --profile high: use that, or leave out --gof-kind"};
-  }
+  if (auto error = check_choice_of_kind(s)) return error;
   if (s.target.kind == Target::kLossless) {
     if (s.profile != Profile::kHigh) {
       return InputError{
           "lossless coding needs --profile high (version 1.2, in preparation): use that, or "
           "leave out --lossless"};
     }
-    if (s.kinds != KindChoice::kAuto && s.kinds != KindChoice::kInter) {
+    if (s.kind.value_or(GofKind::kInter) != GofKind::kInter) {
       return InputError{
           "only inter GOFs are lossless: use --gof-kind inter, or leave out --gof-kind or "
           "--lossless"};
     }
   }
   if (auto error = check_low_delay(s)) return error;
-  const KindChoice kinds = s.usable_kinds();
-  const bool has_bones = kinds == KindChoice::kAuto || kinds == KindChoice::kSkinned;
-  if (kinds == KindChoice::kInter && s.components > 0) {
+  const std::optional<GofKind> kind = s.usable_kind();
+  if (kind == GofKind::kInter && s.components > 0) {
     return InputError{"--components has no effect on inter GOFs: leave it out"};
   }
-  if (!has_bones && s.main != MainTools{}) {
+  if (!s.may_use(GofKind::kSkinned) && s.main != MainTools{}) {
     return InputError{
         "the settings of bones and trajectories have no effect on GOFs without "
         "bones: leave them out, or use --gof-kind auto or skinned"};
   }
   if (auto error = check_pattern(s)) return error;
-  if (kinds == KindChoice::kAuto && (s.inter.temporal_layers > 1 || s.inter.layer_groups > 1)) {
+  if (!kind && (s.inter.temporal_layers > 1 || s.inter.layer_groups > 1)) {
     return InputError{
         "layers of inter GOFs need GOFs of this kind alone: use --gof-kind inter"};
   }
   if (s.inter.layer_groups < 1) return InputError{"there is at least one layer group"};
-  const bool has_frames = kinds == KindChoice::kAuto || kinds == KindChoice::kInter;
-  if (s.inter != InterTools{} && !(has_frames && s.profile == Profile::kHigh)) {
+  if (s.inter != InterTools{} && !(s.may_use(GofKind::kInter) && s.profile == Profile::kHigh)) {
     return InputError{
         "--frame-pattern, --frame-weights, --patches and, except for Baseline, --partition "
         "need "

@@ -35,11 +35,7 @@ std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHea
   constexpr std::uint64_t kOfFrame = 36;     // fixed: memory; without decoded positions
   constexpr std::uint64_t kDecoded = 12;     // fixed: memory
   constexpr std::uint64_t kOfFilter = 2100;  // fixed: memory
-  const KindChoice kinds = settings.usable_kinds();
-  if (settings.profile != Profile::kHigh ||
-      (kinds != KindChoice::kAuto && kinds != KindChoice::kInter)) {
-    return 0;
-  }
+  if (settings.profile != Profile::kHigh || !settings.may_use(GofKind::kInter)) return 0;
   std::size_t choices = 1;
   if (!settings.low_delay) {
     const auto patterns = patterns_of(settings, header.open_end_flag, num_frames);

@@ -28,9 +28,8 @@ std::vector<EncoderSettings> searches_of_profile(const EncoderSettings& settings
 
 // Whether all tools are left to the encoder, so that those of another profile may be used.
 bool is_free(const EncoderSettings& settings) {
-  return settings.target.has_search() && settings.kinds == KindChoice::kAuto &&
-         settings.components == 0 && settings.main == MainTools{} &&
-         settings.inter == InterTools{};
+  return settings.target.has_search() && !settings.kind && settings.components == 0 &&
+         settings.main == MainTools{} && settings.inter == InterTools{};
 }
 
 }  // namespace

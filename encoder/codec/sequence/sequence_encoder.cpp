@@ -171,7 +171,7 @@ std::optional<InputError> SequenceEncoder::allot_memory(const SequenceHeader& he
 std::optional<InputError> SequenceEncoder::cut_gofs(const SequenceHeader& header) {
   const std::uint32_t longest = longest_span_of(header);
   if (settings_.profile == Profile::kBaseline || settings_.preset == Preset::kFast ||
-      settings_.usable_kinds() == KindChoice::kInter) {
+      settings_.usable_kind() == GofKind::kInter) {
     spans_ = equal_gofs(header.num_frames, longest);
     divide_spans(spans_, longest_gof_);
     return std::nullopt;

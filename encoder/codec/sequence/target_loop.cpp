@@ -119,7 +119,7 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
                             .made_for = finer,
                             .coarsest = finer * kAnalysisServes};
   const double step_of_error =
-      settings.usable_kinds() == KindChoice::kInter ? kStepOfFrameError : kStepOfError;
+      settings.usable_kind() == GofKind::kInter ? kStepOfFrameError : kStepOfError;
   return {settings.target, rms_spread * steps_per_unit, steps_per_unit, step_of_error, range};
 }
 

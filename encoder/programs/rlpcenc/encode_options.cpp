@@ -114,7 +114,7 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   if (line.bpvf) s.target = {Target::kBpvf, *line.bpvf};
   if (line.max_error) s.target = {Target::kMaxError, *line.max_error};
   if (line.lossless) s.target = {Target::kLossless, static_cast<double>(*line.lossless)};
-  if (s.usable_kinds() == KindChoice::kInter) {
+  if (s.usable_kind() == GofKind::kInter) {
     s.inter.temporal_layers = std::exchange(s.main.temporal_layers, 1);
     s.inter.layer_groups = std::max(std::exchange(s.main.layer_groups, 0), 1U);
     s.inter.rest = std::exchange(s.main.rest, std::nullopt);

@@ -1,6 +1,11 @@
 #include "encoder/programs/rlpcenc/method_options.h"
 
+#include <map>
 #include <optional>
+#include <string>
+
+#include "common/codec/syntax/gof_header.h"
+#include "encoder/codec/kind_choices.h"
 
 namespace rlpc {
 namespace {
@@ -39,6 +44,20 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
       ->group(group);
 }
 
+// Returns ", cluster, skinned (Main profile and above), inter (High profile)".
+std::string names_of_kinds() {
+  std::string names;
+  for (const GofKind kind : kKindChoices) {
+    names += std::string(", ") + kind_name(kind);
+    const std::uint32_t lowest = properties_of(kind).profile_idc;
+    if (lowest > kProfileBaseline) {
+      names += std::string(" (") + kProfileNames[lowest] + " profile" +
+               (lowest + 1 < kProfileNames.size() ? " and above)" : ")");
+    }
+  }
+  return names;
+}
+
 void add_profile_options(CLI::App& app, EncodeCommandLine& line) {
   const std::string method = "All profiles";
   add_choice<Profile>(
@@ -46,14 +65,11 @@ void add_profile_options(CLI::App& app, EncodeCommandLine& line) {
       {{"high", Profile::kHigh}, {"main", Profile::kMain}, {"baseline", Profile::kBaseline}},
       "Profile of the stream: main (default), baseline, or high (version 1.2, in preparation)")
       ->group(method);
-  add_choice<KindChoice>(
-      app, "--gof-kind", line.options.settings.kinds,
-      {{"auto", KindChoice::kAuto},
-       {"cluster", KindChoice::kCluster},
-       {"skinned", KindChoice::kSkinned},
-       {"inter", KindChoice::kInter}},
-      "Kind of GOFs: auto (default: the cheapest for each), cluster, skinned, inter (frames "
-      "predicted from decoded ones, High profile)")
+  std::map<std::string, std::optional<GofKind>> kinds{{"auto", std::nullopt}};
+  for (const GofKind kind : kKindChoices) kinds[kind_name(kind)] = kind;
+  add_choice<std::optional<GofKind>>(
+      app, "--gof-kind", line.options.settings.kind, kinds,
+      "Kind of GOFs: auto (default: the cheapest for each)" + names_of_kinds())
       ->group(method);
   app.add_option("--components", line.options.settings.components,
                  "Maximum per GOF; Baseline: average per cluster, L of the paper (default: by "

@@ -69,10 +69,10 @@ class ClusterGofKind : public KindEncoder {
 // predict the maximum error, which is usually smaller with bones.
 std::unique_ptr<KindEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
                                                    const EncoderSettings& settings) {
-  if (settings.usable_kinds() == KindChoice::kCluster) {
+  if (settings.usable_kind() == GofKind::kCluster) {
     return std::make_unique<ClusterGofKind>(mesh, settings);
   }
-  if (settings.usable_kinds() != KindChoice::kAuto) return nullptr;
+  if (settings.usable_kind()) return nullptr;
   const bool suits_main = settings.preset != Preset::kFast && settings.main == MainTools{} &&
                           settings.target.kind != Target::kMaxError;
   if (settings.profile != Profile::kBaseline && !suits_main) return nullptr;
@@ -82,7 +82,7 @@ std::unique_ptr<KindEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
 std::unique_ptr<KindEncoder> make_last_resort(const SequenceMesh& mesh,
                                               const EncoderSettings& settings) {
   if (settings.profile == Profile::kBaseline || settings.main != MainTools{} ||
-      settings.usable_kinds() != KindChoice::kAuto) {
+      settings.usable_kind()) {
     return nullptr;
   }
   return std::make_unique<ClusterGofKind>(mesh, settings);

@@ -136,9 +136,9 @@ class InterGofKind : public KindEncoder {
 std::unique_ptr<KindEncoder> make_inter_gof_kind(const SequenceMesh& mesh,
                                                  const EncoderSettings& settings) {
   if (settings.profile != Profile::kHigh) return nullptr;
-  const bool is_wanted = settings.usable_kinds() == KindChoice::kInter;
-  const bool is_compared = settings.usable_kinds() == KindChoice::kAuto &&
-                           settings.preset != Preset::kFast && settings.main == MainTools{};
+  const bool is_wanted = settings.usable_kind() == GofKind::kInter;
+  const bool is_compared = !settings.usable_kind() && settings.preset != Preset::kFast &&
+                           settings.main == MainTools{};
   if (!is_wanted && !is_compared) return nullptr;
   return std::make_unique<InterGofKind>(mesh, settings);
 }

@@ -36,9 +36,9 @@ class SkinnedGofKind : public KindEncoder {
 
 std::unique_ptr<KindEncoder> make_skinned_gof_kind(const SequenceMesh& mesh,
                                                    const EncoderSettings& settings) {
-  const bool is_wanted = settings.usable_kinds() == KindChoice::kAuto ||
-                         settings.usable_kinds() == KindChoice::kSkinned;
-  if (settings.profile == Profile::kBaseline || !is_wanted) return nullptr;
+  if (settings.profile == Profile::kBaseline || !settings.may_use(GofKind::kSkinned)) {
+    return nullptr;
+  }
   return std::make_unique<SkinnedGofKind>(mesh, settings);
 }
 
