@@ -66,6 +66,23 @@ TEST(Settings, ThatContradictEachOtherAreRefused) {
             std::string::npos);
 }
 
+TEST(Settings, KindsOfGofThatAProfileLacksAreRefused) {
+  const auto error_with = [](Profile profile, GofKind kind) {
+    return error_of([&](EncoderSettings& s) {
+      s.profile = profile;
+      s.kind = kind;
+    });
+  };
+  EXPECT_NE(
+      error_with(Profile::kBaseline, GofKind::kSkinned).find("need --profile main or high"),
+      std::string::npos);
+  EXPECT_NE(error_with(Profile::kMain, GofKind::kInter).find("need --profile high"),
+            std::string::npos);
+  EXPECT_NE(error_with(Profile::kHigh, GofKind::kSharedRig).find("cannot be chosen"),
+            std::string::npos);
+  EXPECT_EQ(error_with(Profile::kMain, GofKind::kCluster), "");
+}
+
 // One parameter of a profile, and its name in the error message.
 struct Parameter {
   const char* option;
