@@ -4,12 +4,12 @@
 #include <charconv>
 #include <system_error>
 
+#include "common/files/ascii.h"
+
 namespace rlpc {
 namespace {
 
 constexpr std::size_t kMaxWidth = 19;
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // Parses a name with one run of "#".
 std::optional<NumberedName> parse_run(const std::string& name) {

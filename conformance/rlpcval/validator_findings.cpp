@@ -1,10 +1,17 @@
 #include "conformance/rlpcval/validator_findings.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <string_view>
 #include <utility>
 
 namespace rlpc {
+
+std::string hex(std::uint32_t value) {
+  char text[16];
+  std::snprintf(text, sizeof text, "0x%08X", value);
+  return text;
+}
 
 std::size_t ValidationReport::count(Severity severity) const {
   const auto listed = std::count_if(findings.begin(), findings.end(),

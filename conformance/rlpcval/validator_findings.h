@@ -10,6 +10,9 @@
 
 namespace rlpc {
 
+// Returns a CRC or signature as details of findings show it: 0x0123ABCD.
+std::string hex(std::uint32_t value);
+
 class FindingList {
  public:
   FindingList(ValidationReport& report, std::size_t max_findings)

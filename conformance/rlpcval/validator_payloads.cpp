@@ -1,6 +1,5 @@
 // Contents of units: 6.3 to 6.13, and the hash check of 8.6.2.
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
@@ -26,12 +25,6 @@ namespace {
 
 BitReader bits_of(const UnitHeader& unit, const std::vector<std::uint8_t>& payload) {
   return BitReader(payload, unit.payload_offset() * 8);
-}
-
-std::string hex(std::uint32_t value) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%08X", value);
-  return text;
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <string>
 
 #include "common/codec/bits/crc32.h"
@@ -21,12 +20,6 @@ std::uint32_t big_endian(const std::uint8_t* b) {
 
 std::uint32_t swapped(std::uint32_t x) {
   return x >> 24 | (x >> 8 & 0xFF00) | (x << 8 & 0xFF0000) | x << 24;
-}
-
-std::string hex(std::uint32_t value) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%08X", value);
-  return text;
 }
 
 std::string describe_signature(const std::array<std::uint8_t, kStreamHeaderBytes>& bytes) {

@@ -7,6 +7,7 @@
 
 #include "common/files/float_position.h"
 #include "common/memory/owned.h"
+#include "decoder/c_api/vector3.h"
 #include "decoder/surface/attribute_values.h"
 
 namespace rlpc {
@@ -46,14 +47,6 @@ Int rounded(double value) {
   const double most = std::numeric_limits<Int>::max();
   const double least = std::numeric_limits<Int>::min();
   return static_cast<Int>(std::nearbyint(std::clamp(value, least, most)));
-}
-
-using Vec3d = std::array<double, 3>;
-
-double dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 }  // namespace

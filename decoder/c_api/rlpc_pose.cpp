@@ -10,11 +10,10 @@
 
 #include "common/codec/mesh/skeleton.h"
 #include "decoder/c_api/decoder_handle.h"
+#include "decoder/c_api/vector3.h"
 
 namespace rlpc {
 namespace {
-
-using Vec3d = std::array<double, 3>;
 
 // Map x -> turn * x + move; turn has columns.
 struct AffineMap {
@@ -29,12 +28,6 @@ struct AffineMap {
     return y;
   }
 };
-
-double dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 // Returns the map first(second(x)).
 AffineMap product(const AffineMap& first, const AffineMap& second) {

@@ -13,11 +13,11 @@ namespace rlpc {
 namespace {
 
 constexpr double kWidth = 560;
-constexpr double kHeight = 270;
-constexpr double kLeft = 64;
-constexpr double kRight = 14;
-constexpr double kTop = 14;
-constexpr double kBottom = 42;
+constexpr double kChartHeight = 270;
+constexpr double kLeftMargin = 64;
+constexpr double kRightMargin = 14;
+constexpr double kTopMargin = 14;
+constexpr double kBottomMargin = 42;
 constexpr std::size_t kMaxPoints = 1000;  // per line
 
 struct Frames {
@@ -26,22 +26,25 @@ struct Frames {
 };
 
 Frames axes(double last_frame, double highest) {
-  return {Axis(0, last_frame, false, kLeft, kWidth - kRight),
-          Axis(0, highest > 0 ? 1.06 * highest : 1, false, kHeight - kBottom, kTop)};
+  return {Axis(0, last_frame, false, kLeftMargin, kWidth - kRightMargin),
+          Axis(0, highest > 0 ? 1.06 * highest : 1, false, kChartHeight - kBottomMargin,
+               kTopMargin)};
 }
 
 std::string grid(const Frames& axes, std::string_view x_label) {
   std::string svg;
   for (const double value : axes.y.ticks(5)) {
     const std::string y = pixel_text(axes.y.at(value));
-    svg += "<path class=\"grid\" d=\"M" + pixel_text(kLeft) + " " + y + "H" +
-           pixel_text(kWidth - kRight) + "\"/>\n" +
-           svg_text(kLeft - 8, axes.y.at(value) + 4, "end", tick_text(value));
+    svg += "<path class=\"grid\" d=\"M" + pixel_text(kLeftMargin) + " " + y + "H" +
+           pixel_text(kWidth - kRightMargin) + "\"/>\n" +
+           svg_text(kLeftMargin - 8, axes.y.at(value) + 4, "end", tick_text(value));
   }
   for (const double value : axes.x.ticks(8, 1)) {
-    svg += svg_text(axes.x.at(value), kHeight - kBottom + 18, "middle", tick_text(value));
+    svg += svg_text(axes.x.at(value), kChartHeight - kBottomMargin + 18, "middle",
+                    tick_text(value));
   }
-  return svg + svg_text((kLeft + kWidth - kRight) / 2, kHeight - 4, "middle", x_label);
+  return svg + svg_text((kLeftMargin + kWidth - kRightMargin) / 2, kChartHeight - 4, "middle",
+                        x_label);
 }
 
 std::string legend(const std::vector<ChartSeries>& series) {
@@ -55,16 +58,16 @@ std::string legend(const std::vector<ChartSeries>& series) {
 
 std::string figure(std::string_view title, std::string_view unit, const std::string& svg,
                    const std::vector<ChartSeries>& series, nlohmann::ordered_json data) {
-  data["left"] = kLeft;
-  data["right"] = kWidth - kRight;
-  data["top"] = kTop;
-  data["bottom"] = kHeight - kBottom;
+  data["left"] = kLeftMargin;
+  data["right"] = kWidth - kRightMargin;
+  data["top"] = kTopMargin;
+  data["bottom"] = kChartHeight - kBottomMargin;
   for (const ChartSeries& s : series) data["names"].push_back(s.name);
   std::string html = "<figure class=\"card chart\" data-chart=\"";
   html += escape_html(json_text(data)) + "\">\n<figcaption><b>" + escape_html(title) +
           "</b> <span>";
   html += escape_html(unit) + "</span></figcaption>\n<svg viewBox=\"0 0 " + tick_text(kWidth) +
-          " " + tick_text(kHeight) + "\" role=\"img\" aria-label=\"" + escape_html(title) +
+          " " + tick_text(kChartHeight) + "\" role=\"img\" aria-label=\"" + escape_html(title) +
           "\">\n";
   return html + svg + "</svg>\n" + legend(series) + "</figure>\n";
 }

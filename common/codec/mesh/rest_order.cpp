@@ -11,7 +11,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kNone = 0xFFFFFFFF;
+constexpr std::uint32_t kNotPlaced = 0xFFFFFFFF;
 constexpr std::size_t kMostCounted =
     3;  // maximum number of hinges that raise the priority of a vertex
 
@@ -34,7 +34,7 @@ ListOfLists<std::uint32_t> group_indices(
 }  // namespace
 
 RestOrder::RestOrder(const Topology& topology, std::span<const Triangle> triangles)
-    : place_(topology.earlier_neighbours.size(), kNone) {
+    : place_(topology.earlier_neighbours.size(), kNotPlaced) {
   find_edges(triangles);
   make_order();
   make_rings(topology);
@@ -123,15 +123,15 @@ void RestOrder::make_order() {
   order_.reserve(place_.size());
   std::uint32_t lowest = 0;
   while (order_.size() < place_.size()) {
-    std::uint32_t v = kNone;
-    for (std::size_t d = kMostCounted; d > 0 && v == kNone; --d) {
-      while (v == kNone && heads[d] < queues[d].size()) {
+    std::uint32_t v = kNotPlaced;
+    for (std::size_t d = kMostCounted; d > 0 && v == kNotPlaced; --d) {
+      while (v == kNotPlaced && heads[d] < queues[d].size()) {
         const std::uint32_t u = queues[d][heads[d]++];
-        if (place_[u] == kNone) v = u;
+        if (place_[u] == kNotPlaced) v = u;
       }
     }
-    if (v == kNone) {
-      while (place_[lowest] != kNone) ++lowest;
+    if (v == kNotPlaced) {
+      while (place_[lowest] != kNotPlaced) ++lowest;
       v = lowest;
     }
     place_[v] = static_cast<std::uint32_t>(order_.size());
@@ -146,7 +146,8 @@ void RestOrder::make_order() {
           hinges_in_order.push_back(edge.seen_from(k));
           ++count_of[v];
         }
-        if (num_known[i] == 3 && place_[corner] == kNone && degree[corner] < kMostCounted) {
+        if (num_known[i] == 3 && place_[corner] == kNotPlaced &&
+            degree[corner] < kMostCounted) {
           queues[++degree[corner]].push_back(corner);
         }
       }

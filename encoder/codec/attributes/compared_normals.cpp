@@ -17,8 +17,6 @@ double degrees_between(const Vec3d& a, const Vec3d& b) {
   return kDegrees * angle_between(a, b);
 }
 
-bool is_zero(const Vec3d& v) { return dot(v, v) == 0.0; }
-
 }  // namespace
 
 ComparedNormals::ComparedNormals(const ComparedMesh& mesh,

@@ -66,8 +66,6 @@ std::vector<Vec3d> of_sectors(const NormalTask& task, std::span<const float> val
   return normals;
 }
 
-bool is_zero(const Vec3d& v) { return dot(v, v) == 0.0; }
-
 Smoothing smoothing_at_rest(const NormalTask& task, const std::vector<Vec3d>& at_rest) {
   std::vector<Point> wanted;
   for (const Vec3d& n : at_rest) {

@@ -15,6 +15,7 @@ namespace rlpc {
 using Vec3d = std::array<double, 3>;
 
 double dot(const Vec3d& a, const Vec3d& b);
+inline bool is_zero(const Vec3d& v) { return dot(v, v) == 0.0; }
 // Scales a vector to length 1; zero stays zero.
 Vec3d normalised(Vec3d v);
 // Returns the angle between unit vectors, in radians; the same on every machine.

@@ -47,7 +47,7 @@ void for_some_rows(const TrajectoryRows& rows,
 
 // The components of a wide matrix must number at most a quarter of the sampled frames, or the
 // sample is not enough.
-constexpr std::size_t kWide = 1536;    // fixed: time; 512 frames of three coordinates
+constexpr std::size_t kWideMatrix = 1536;  // fixed: time; 512 frames of three coordinates
 constexpr std::size_t kSampled = 512;  // fixed: time; a sixteenth of the time of the narrowest
 constexpr std::size_t kMostOfSample = kSampled / 4;  // fixed: see above
 
@@ -212,7 +212,7 @@ ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_co
     return result;
   }
   if (width == 0) return result;
-  if (width > kWide) {
+  if (width > kWideMatrix) {
     if (auto found = components_in_subspace(rows, max_components, min_energy)) return *found;
     // Rows are read again.
   }

@@ -13,9 +13,9 @@ constexpr int kPasses = 8;          // fixed: time; they rarely help after four
 constexpr std::size_t kTried = 16;  // fixed: time; vertices that may be too heavy for a side
 constexpr std::size_t kPatience = 100;  // fixed: time; moves of a pass without success
 
-class Pass {
+class RefinementPass {
  public:
-  Pass(const Graph& graph, const SideWeights& most, Sides& side)
+  RefinementPass(const Graph& graph, const SideWeights& most, Sides& side)
       : graph_(graph),
         most_(most),
         side_(side),
@@ -125,7 +125,7 @@ class Pass {
 
 void refine_bisection(const Graph& graph, const SideWeights& most, Sides& side) {
   for (int i = 0; i < kPasses; ++i) {
-    if (!Pass(graph, most, side).run()) return;
+    if (!RefinementPass(graph, most, side).run()) return;
   }
 }
 

@@ -9,7 +9,7 @@
 namespace rlpc {
 namespace {
 
-constexpr int kPasses = 8;               // fixed: time; over all vertices
+constexpr int kGlobalPasses = 8;         // fixed: time; over all vertices
 constexpr std::uint32_t kPerCent = 103;  // fixed: balance; largest part over the mean
 
 void divide(const Graph& graph, const std::vector<std::uint32_t>& original, std::uint32_t first,
@@ -86,7 +86,7 @@ Partition kway_partition(const Graph& graph, std::uint32_t count) {
   for (std::uint32_t v = 0; v < all.size(); ++v) all[v] = v;
   divide(graph, all, 0, count, partition);
   PartRefinement refinement(graph, count, partition);
-  for (int i = 0; i < kPasses && refinement.pass(); ++i) {
+  for (int i = 0; i < kGlobalPasses && refinement.pass(); ++i) {
   }
   return partition;
 }

@@ -19,9 +19,9 @@ constexpr std::uint32_t kSampleFrames = 24;  // fixed: memory
 constexpr double kRidge = 1e-3;
 constexpr std::uint32_t kSeedVertices = 32;  // tuned: Vertices that give a new part its motion.
 constexpr int kRoundsWhileGrowing =
-    2;                       // tuned (off: 0): Rounds each time the parts have doubled.
-constexpr int kRounds = 30;  // tuned (off: 0): Rounds of the final parts.
-constexpr std::size_t kTogether = 1024;  // fixed: vertices of a pass
+    2;                            // tuned (off: 0): Rounds each time the parts have doubled.
+constexpr int kFinalRounds = 30;  // tuned (off: 0): Rounds of the final parts.
+constexpr std::size_t kVerticesTogether = 1024;  // fixed: vertices of a pass
 
 // Displacements from the first frame, x, y and z of all sample frames: translation + linear
 // part * (position - centre).
@@ -62,7 +62,7 @@ class MotionParts {
       settled = motions_.size();
       settle(kRoundsWhileGrowing);
     }
-    settle(kRounds);
+    settle(kFinalRounds);
     return std::move(partition_);
   }
 
@@ -154,7 +154,7 @@ bool MotionParts::add_part() {
   const auto seed = static_cast<std::uint32_t>(worst - error_.begin());
   const auto part = static_cast<std::uint16_t>(motions_.size());
   motions_.push_back(fit(around(seed)));
-  for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+  for_ranges(rest_.size(), kVerticesTogether, [&](std::size_t first, std::size_t end) {
     for (std::size_t v = first; v < end; ++v) {
       const double other = error(motions_[part], static_cast<std::uint32_t>(v));
       if (other >= error_[v]) continue;
@@ -180,7 +180,7 @@ void MotionParts::fit_all(std::size_t count) {
 // Assigns vertices. Returns whether any moved to the part of a neighbour.
 bool MotionParts::assign() {
   const Partition before = partition_;
-  for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+  for_ranges(rest_.size(), kVerticesTogether, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       const auto v = static_cast<std::uint32_t>(i);
       error_[v] = error(motions_[before[v]], v);

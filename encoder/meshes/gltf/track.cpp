@@ -12,13 +12,13 @@ namespace rlpc {
 namespace {
 
 // A time relative to the keys of a track: `part` of the way from `key` to the next.
-struct Place {
+struct KeyPlace {
   std::size_t key = 0;
   double part = 0.0;      // 0 where the value is held
   double duration = 0.0;  // seconds from `key` to the next
 };
 
-Place find_place(const GltfTrack& track, double time) {
+KeyPlace find_place(const GltfTrack& track, double time) {
   assert(!track.times.empty());
   const auto next = std::upper_bound(track.times.begin(), track.times.end(), time);
   if (next == track.times.begin()) return {};
@@ -103,7 +103,7 @@ void sample(const GltfTrack& track, double time, std::span<double> out) {
 }
 
 GltfQuaternion sample_rotation(const GltfTrack& track, double time) {
-  const Place place = find_place(track, time);
+  const KeyPlace place = find_place(track, time);
   if (track.interpolation == GltfInterpolation::kLinear && place.part > 0.0) {
     return slerp(rotation_at(track, place.key), rotation_at(track, place.key + 1), place.part);
   }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/files/ascii.h"
 #include "encoder/meshes/names/name_number.h"
 #include "encoder/meshes/names/name_order.h"
 #include "encoder/meshes/names/name_problem.h"
@@ -12,8 +13,6 @@
 namespace rlpc {
 
 namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // Returns the run of digits that starts at `pos`, without its leading zeros; moves `pos` past
 // it.

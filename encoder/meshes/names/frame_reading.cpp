@@ -4,13 +4,12 @@
 #include <cmath>
 #include <string_view>
 
+#include "common/files/ascii.h"
 #include "encoder/meshes/names/frame_steps.h"
 
 namespace rlpc {
 
 namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // Whether a hyphen that ends at `end` follows neither a separator nor the beginning.
 bool follows_word(std::string_view text, std::size_t end) {

@@ -5,14 +5,14 @@
 #include <limits>
 #include <system_error>
 
+#include "common/files/ascii.h"
+
 namespace rlpc {
 
 namespace {
 
 // U+2212, which some programs write.
 constexpr std::string_view kMinus = "\xE2\x88\x92";
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 char lower(char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); }
 

@@ -10,6 +10,7 @@
 #include "common/codec/bits/int_math.h"
 #include "common/parallel/for_each.h"
 #include "encoder/codec/kinds/inter/on_grid.h"
+#include "encoder/codec/kinds/inter/point_units.h"
 #include "encoder/codec/spans/residual_choice.h"
 
 namespace rlpc {
@@ -47,8 +48,6 @@ void ClosedLoop::predict(Layer& layer, std::uint32_t index) {
 }
 
 void ClosedLoop::choose(Layer& layer, std::span<const double> xyz, InterFrame* coded) {
-  constexpr double kPoint = 1 << kPointFractionBits;  // fixed: format
-  constexpr double kStepUnits = 256.0;                // fixed: format
   InterContexts& contexts = writer_.contexts();
   const bool is_base = !layer.vertices.empty() && mesh_.layer_of(layer.vertices[0]) == 0;
   for (std::size_t i = 0; i < layer.vertices.size(); ++i) {
@@ -63,18 +62,18 @@ void ClosedLoop::choose(Layer& layer, std::span<const double> xyz, InterFrame* c
     }
     writer_.start(v);
     layer.expected[i] = contexts.frame_expected();
-    const double step = static_cast<double>(recon_.step(v)) * (kPoint / kStepUnits);
+    const double step = static_cast<double>(recon_.step(v)) * kStepUnits;
     Vec3i residual{};
     for (std::size_t c = 0; c < 3; ++c) {
       const double value = xyz[3 * std::size_t{v} + c];
       const double start = recon_.start_of(v, motion, c);
       if (to_nearest_) {
-        residual[c] = rounded_residual((value * kPoint - start) / step, 0.5);
+        residual[c] = rounded_residual((value * kPointUnits - start) / step, 0.5);
       } else if (settings_.exact_flag) {
-        residual[c] = rounded_residual((on_grid(value) * kPoint - start) / step, 0.5);
+        residual[c] = rounded_residual((on_grid(value) * kPointUnits - start) / step, 0.5);
       } else {
         residual[c] = cheaper_residual(contexts.models(), contexts.expected(),
-                                       (value * kPoint - start) / step);
+                                       (value * kPointUnits - start) / step);
       }
       writer_.write(residual[c]);
       if (coded != nullptr && residual[c] != 0) {

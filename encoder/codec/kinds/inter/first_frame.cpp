@@ -9,20 +9,19 @@
 #include "common/codec/bits/int_math.h"
 #include "encoder/codec/kinds/inter/closed_loop.h"
 #include "encoder/codec/kinds/inter/on_grid.h"
+#include "encoder/codec/kinds/inter/point_units.h"
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/spans/lagrangian.h"
 
 namespace rlpc {
 namespace {
 
-constexpr double kPoint = 1 << kPointFractionBits;  // fixed: format
-
 std::vector<std::int32_t> points(std::span<const double> xyz, int position_bits, bool exact) {
   const double limit = exact_exp2(rest_bits(position_bits) - 1);
   std::vector<std::int32_t> points;
   points.reserve(xyz.size());
   for (const double x : xyz) {
-    const double point = exact ? kPoint * on_grid(x) : kPoint * x;
+    const double point = exact ? kPointUnits * on_grid(x) : kPointUnits * x;
     points.push_back(
         static_cast<std::int32_t>(round_to_int(std::clamp(point, -limit, limit - 1.0))));
   }
@@ -38,7 +37,7 @@ double cost_of(std::span<const double> xyz, std::span<const std::int32_t> positi
     const double d = positions[i] - xyz[i];
     square += d * d;
   }
-  return square + lambda(settings.step[0] / kPoint) * bits;
+  return square + lambda(settings.step[0] / kPointUnits) * bits;
 }
 
 double cost_in_layers(const OrderedMesh& mesh, const InterSettings& settings,

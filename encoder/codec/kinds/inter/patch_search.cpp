@@ -9,6 +9,7 @@
 #include "common/codec/bits/fixed_point.h"
 #include "common/parallel/for_each.h"
 #include "encoder/codec/kinds/inter/on_grid.h"
+#include "encoder/codec/kinds/inter/point_units.h"
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/math/small_system.h"
 #include "encoder/codec/spans/residual_choice.h"
@@ -18,16 +19,14 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kTogether = 128;                        // fixed: vertices of a pass
+constexpr std::size_t kVerticesTogether = 128;                // fixed: vertices of a pass
 constexpr std::size_t kPatchesTogether = 16;                  // fixed: patches of a pass
-constexpr double kPoint = 1 << kPointFractionBits;            // fixed: format
-constexpr double kStepUnits = 256.0 / kPoint;                 // fixed: format
 constexpr double kMatrixOne = 1 << kMatrixFractionBits;       // fixed: format
 constexpr double kMotionStep = 1.0 / (1 << kMotionStepLog2);  // fixed: format
 
 // Returns the step of a vertex, in 1/16 grid units.
 double step_of(const InterRecon& recon, std::uint32_t v) {
-  return static_cast<double>(recon.step(v)) / kStepUnits;
+  return static_cast<double>(recon.step(v)) * kStepUnits;
 }
 
 // Returns the bits of a motion whose patch the contexts have started; leaves these unchanged.
@@ -207,7 +206,8 @@ void PatchSearch::predict_from_neighbours(std::span<const double> xyz, InterReco
         for (std::size_t c = 0; c < 3; ++c) {
           const std::size_t own = 3 * std::size_t{v} + c;
           const double value = settings_.exact_flag ? on_grid(xyz[own]) : xyz[own];
-          wanted_[own] = (value * kPoint - recon.start_of(v, motion, c)) / step_of(recon, v);
+          wanted_[own] =
+              (value * kPointUnits - recon.start_of(v, motion, c)) / step_of(recon, v);
           residual[c] = rounded_residual(wanted_[own], round_up);
         }
         recon.set(v, motion, recon.position(v, motion, residual));
@@ -216,7 +216,7 @@ void PatchSearch::predict_from_neighbours(std::span<const double> xyz, InterReco
     if (layer == 0) {
       predict(0, vertices.size());
     } else {
-      for_ranges(vertices.size(), kTogether, predict);
+      for_ranges(vertices.size(), kVerticesTogether, predict);
     }
   }
 }
@@ -237,7 +237,7 @@ PatchMotion PatchSearch::fit(std::size_t patch, std::span<const double> xyz,
     }
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t own = 3 * std::size_t{v} + c;
-      double left = xyz[own] * kPoint - reference[own] - last[c];
+      double left = xyz[own] * kPointUnits - reference[own] - last[c];
       for (std::size_t k = 0; k < 3; ++k) {
         left -= last[kOffsetValues + 3 * c + k] / kMatrixOne * x[k] * reach;
       }
@@ -274,9 +274,9 @@ double PatchSearch::error(std::size_t patch, std::span<const double> xyz, std::u
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t own = 3 * std::size_t{v} + c;
       std::int64_t at = recon.patches().moved(moved, v, c);
-      double value = xyz[own] * kPoint;
+      double value = xyz[own] * kPointUnits;
       if (settings_.exact_flag) {
-        value = on_grid(xyz[own]) * kPoint;
+        value = on_grid(xyz[own]) * kPointUnits;
         at = to_grid(at);
       }
       const double of_axis = (value - static_cast<double>(at)) / step_of(recon, v);

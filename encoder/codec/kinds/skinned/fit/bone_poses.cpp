@@ -7,21 +7,13 @@
 #include "encoder/codec/math/matrix_products.h"
 
 namespace rlpc {
-namespace {
-
-using Column4 = Eigen::Vector4d;
-
-Column4 homogeneous(const Vec3d& p) { return {p(0), p(1), p(2), 1.0}; }
-
-}  // namespace
-
 SkinMoments::SkinMoments(std::size_t num_bones)
     : num_bones_(num_bones),
       block_(num_bones * num_bones, Eigen::Matrix4d::Zero()),
       sharing_(num_bones) {}
 
 void SkinMoments::add(const Vec3d& rest, std::span<const RigWeight> weights) {
-  const Column4 p = homogeneous(rest);
+  const Eigen::Vector4d p = homogeneous(rest);
   const Eigen::Matrix4d products = p * p.transpose();
   for (const RigWeight& a : weights) {
     for (const RigWeight& b : weights) {
@@ -50,7 +42,7 @@ double SkinMoments::spread2(std::size_t bone) const {
 void PoseTargets::add(const Vec3d& rest, std::span<const RigWeight> weights,
                       std::span<const Vec3d> trajectory) {
   static_assert(sizeof(Vec3d) == 3 * sizeof(double));
-  const Column4 p = homogeneous(rest);
+  const Eigen::Vector4d p = homogeneous(rest);
   const std::size_t size = Motion::ColsAtCompileTime * values_;
   for (const RigWeight& w : weights) {
     add_outer_product(w.weight, {p.data(), Motion::ColsAtCompileTime},
@@ -90,7 +82,7 @@ void refine_poses(const SkinMoments& moments, std::span<const Motion> targets,
 
 namespace {
 
-using Vector = Eigen::Matrix<double, 6, 1>;  // a rotation vector and a translation
+using Twist = Eigen::Matrix<double, 6, 1>;  // a rotation vector and a translation
 
 // Returns the sum of u x v over pairs (u, v), where k is the sum of v u^T.
 Vec3d curl(const Eigen::Matrix3d& k) {
@@ -140,16 +132,16 @@ class StepEquations {
   }
 
   // Solves by conjugate gradients, preconditioned with the inverses of the diagonal blocks.
-  std::vector<Vector> solve(std::vector<Vector> left) const {
+  std::vector<Twist> solve(std::vector<Twist> left) const {
     constexpr int kMost = 30;            // fixed: steps; usually ten are enough
     constexpr double kLeastPart = 1e-6;  // fixed: squared; another Gauss-Newton step follows
-    std::vector<Vector> x(left.size(), Vector::Zero());
-    std::vector<Vector> near = times_inverse(left);
-    std::vector<Vector> along = near;
+    std::vector<Twist> x(left.size(), Twist::Zero());
+    std::vector<Twist> near = times_inverse(left);
+    std::vector<Twist> along = near;
     double size = dot(left, near);
     const double least = kLeastPart * size;
     for (int i = 0; i < kMost && size > least; ++i) {
-      const std::vector<Vector> change = times(along);
+      const std::vector<Twist> change = times(along);
       const double curvature = dot(along, change);
       if (!(curvature > 0.0)) break;
       const double by = size / curvature;
@@ -172,20 +164,20 @@ class StepEquations {
   void add_inverse(const Block& block) {
     inverse_.push_back(block.ldlt().solve(Block::Identity()));
   }
-  std::vector<Vector> times_inverse(const std::vector<Vector>& x) const {
-    std::vector<Vector> result(x.size());
+  std::vector<Twist> times_inverse(const std::vector<Twist>& x) const {
+    std::vector<Twist> result(x.size());
     for (std::size_t b = 0; b < x.size(); ++b) result[b] = inverse_[b] * x[b];
     return result;
   }
-  std::vector<Vector> times(const std::vector<Vector>& x) const {
-    std::vector<Vector> result(x.size(), Vector::Zero());
+  std::vector<Twist> times(const std::vector<Twist>& x) const {
+    std::vector<Twist> result(x.size(), Twist::Zero());
     for (std::size_t b = 0; b < x.size(); ++b) {
       const Block* block = &blocks_[first_[b]];
       for (const std::size_t c : moments_.sharing(b)) result[b] += *block++ * x[c];
     }
     return result;
   }
-  static double dot(const std::vector<Vector>& a, const std::vector<Vector>& b) {
+  static double dot(const std::vector<Twist>& a, const std::vector<Twist>& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
     return sum;
@@ -202,7 +194,7 @@ class StepEquations {
 void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
                  std::vector<Motion>& motions) {
   const std::size_t n = motions.size();
-  std::vector<Vector> left(n);
+  std::vector<Twist> left(n);
   for (std::size_t b = 0; b < n; ++b) {
     Motion residual = targets[b];  // sum of w_b r (p, 1)^T, r the residual of all bones
     for (const std::size_t c : moments.sharing(b)) residual -= motions[c] * moments.block(c, b);
@@ -210,7 +202,7 @@ void solve_poses(const SkinMoments& moments, std::span<const Motion> targets,
     left[b].head<3>() = curl(residual.leftCols<3>() * rb.transpose());
     left[b].tail<3>() = residual.col(3);
   }
-  const std::vector<Vector> x = StepEquations(moments, motions).solve(std::move(left));
+  const std::vector<Twist> x = StepEquations(moments, motions).solve(std::move(left));
   for (std::size_t b = 0; b < n; ++b) {
     if (!(moments.mass(b) > 0.0)) continue;
     const Vec3d turn = x[b].head<3>();

@@ -13,7 +13,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kTogether = 64;  // fixed: vertices or patches of a pass
+constexpr std::size_t kVerticesTogether = 64;  // fixed: vertices or patches of a pass
 
 }  // namespace
 
@@ -76,18 +76,19 @@ std::vector<Motion> BoneSolver::motion_of(std::span<const std::uint32_t> vertice
 
 void BoneSolver::find_patch_errors() {
   patch_error_.assign(sample_.patches.size(), 0.0);
-  for_ranges(sample_.patches.size(), kTogether, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      const std::vector<Motion> motion = motion_of(sample_.patches[i]);
-      double error = 0.0;
-      for (const std::uint32_t v : sample_.patches[i]) {
-        for (std::size_t f = 0; f < sample_.num_frames; ++f) {
-          error += (moved(motion[f], rest_[v]) - sample_.trajectory(v)[f]).squaredNorm();
+  for_ranges(
+      sample_.patches.size(), kVerticesTogether, [&](std::size_t first, std::size_t end) {
+        for (std::size_t i = first; i < end; ++i) {
+          const std::vector<Motion> motion = motion_of(sample_.patches[i]);
+          double error = 0.0;
+          for (const std::uint32_t v : sample_.patches[i]) {
+            for (std::size_t f = 0; f < sample_.num_frames; ++f) {
+              error += (moved(motion[f], rest_[v]) - sample_.trajectory(v)[f]).squaredNorm();
+            }
+          }
+          patch_error_[i] = error;
         }
-      }
-      patch_error_[i] = error;
-    }
-  });
+      });
 }
 
 // Adds at most `count` bones. Returns the number added.
@@ -231,7 +232,7 @@ void BoneSolver::fit_weights(std::size_t v, const SkinSums& sums) {
 }
 
 void BoneSolver::fit_all_weights(bool new_candidates, const SkinSums& sums) {
-  for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+  for_ranges(rest_.size(), kVerticesTogether, [&](std::size_t first, std::size_t end) {
     for (std::size_t v = first; v < end; ++v) {
       if (new_candidates) choose_candidates(v, sums);
       fit_weights(v, sums);
@@ -245,7 +246,7 @@ void BoneSolver::fit_all_weights(bool new_candidates, const SkinSums& sums) {
 // Fits the weights of vertices that the last bone moves more closely than a candidate.
 void BoneSolver::offer_last_bone(const SkinSums& sums) {
   const std::size_t bone = motions_.size() - 1;
-  for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+  for_ranges(rest_.size(), kVerticesTogether, [&](std::size_t first, std::size_t end) {
     for (std::size_t v = first; v < end; ++v) {
       std::vector<std::size_t>& list = candidates_[v];
       std::size_t place = list.size();
@@ -345,7 +346,7 @@ double BoneSolver::loss_without(std::size_t v, std::uint32_t bone) const {
 // Returns [bone]: the increase of the squared error if the bone is removed.
 std::vector<double> BoneSolver::losses() const {
   std::vector<std::array<double, kMaxExtraBones>> of_vertex(rest_.size());
-  for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+  for_ranges(rest_.size(), kVerticesTogether, [&](std::size_t first, std::size_t end) {
     for (std::size_t v = first; v < end; ++v) {
       const std::vector<RigWeight>& weights = weights_[v].weights;
       for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -364,7 +365,7 @@ std::vector<double> BoneSolver::losses() const {
 void BoneSolver::remove_bone(std::size_t bone, SkinSums& sums) {
   motions_.erase(motions_.begin() + static_cast<std::ptrdiff_t>(bone));
   sums.remove_bone(bone);
-  for_ranges(rest_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+  for_ranges(rest_.size(), kVerticesTogether, [&](std::size_t first, std::size_t end) {
     for (std::size_t v = first; v < end; ++v) {
       bool lost = false;
       for (std::size_t& candidate : candidates_[v]) {

@@ -14,6 +14,8 @@ using Vec3d = Eigen::Vector3d;
 using Motion = Eigen::Matrix<double, 3, 4>;    // [R | t]: maps x to R x + t
 using UnitQuaternion = std::array<double, 4>;  // w, x, y, z
 
+// Returns (p, 1).
+inline Eigen::Vector4d homogeneous(const Vec3d& p) { return {p(0), p(1), p(2), 1.0}; }
 inline Vec3d moved(const Motion& m, const Vec3d& x) { return m.leftCols<3>() * x + m.col(3); }
 
 Eigen::Matrix3d rotation_matrix(const UnitQuaternion& unit);

@@ -13,8 +13,6 @@
 namespace rlpc {
 namespace {
 
-Eigen::Vector4d homogeneous(const Vec3d& p) { return {p(0), p(1), p(2), 1.0}; }
-
 constexpr std::size_t kColumns = 4;  // fixed: columns of a motion
 
 // Returns the motions of some bones, interleaved: [frame][3][bone][4].

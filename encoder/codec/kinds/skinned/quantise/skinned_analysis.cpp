@@ -25,7 +25,7 @@ constexpr double kFinerLayer = 0.9;
 // tuned (off: 1): Smallest quantiser step of a layer relative to that of the finest layer.
 // Coarser layers have so few vertices that their errors barely count.
 constexpr double kFinestLayer = 0.4;
-constexpr std::size_t kTogether = 32;  // fixed: vertices of a pass
+constexpr std::size_t kVerticesTogether = 32;  // fixed: vertices of a pass
 
 std::uint32_t step_idx(double step) {
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(
@@ -266,7 +266,7 @@ class SkinnedAnalyser {
         std::clamp<std::int64_t>(round_to_int(rest_step), 1, kMaxRestStep));
     const std::uint32_t n = frames_.num_vertices;
     std::vector<Point> wanted(n);
-    for_ranges(n, kTogether, [&](std::size_t v, std::size_t end) {
+    for_ranges(n, kVerticesTogether, [&](std::size_t v, std::size_t end) {
       MeanMotions motions(motions_);
       for (; v < end; ++v) wanted[v] = fit_rest(static_cast<std::uint32_t>(v), motions);
     });
@@ -284,16 +284,17 @@ class SkinnedAnalyser {
     return {frames_.num_vertices, width,
             [this, width, chosen = numbers_from(0, frames_.num_frames)](
                 std::size_t first, std::span<double> rows) {
-              for_ranges(rows.size() / width, kTogether, [&](std::size_t i, std::size_t end) {
-                MeanMotions motions(motions_);
-                for (; i < end; ++i) {
-                  const auto v = static_cast<std::uint32_t>(first + i);
-                  write_displacement(
-                      frames_, chosen, v,
-                      motions.of(found_.rig.influences[v], found_.rig.weight_bits), rest_of(v),
-                      &rows[i * width]);
-                }
-              });
+              for_ranges(rows.size() / width, kVerticesTogether,
+                         [&](std::size_t i, std::size_t end) {
+                           MeanMotions motions(motions_);
+                           for (; i < end; ++i) {
+                             const auto v = static_cast<std::uint32_t>(first + i);
+                             write_displacement(
+                                 frames_, chosen, v,
+                                 motions.of(found_.rig.influences[v], found_.rig.weight_bits),
+                                 rest_of(v), &rows[i * width]);
+                           }
+                         });
             }};
   }
 
