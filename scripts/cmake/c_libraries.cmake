@@ -40,6 +40,9 @@ rlpc_c_library(rlpc_static rlpc STATIC ${c_of_common} ${c_of_decoder} ${c_of_enc
   $<TARGET_OBJECTS:rlpc_validator>)
 target_link_libraries(rlpc_static PRIVATE ZLIB::ZLIB Threads::Threads)
 
+rlpc_unity(rlpc)
+rlpc_unity(rlpc_static)
+
 # Without the writers of mesh files. Memory can come from callbacks, so containers are others, and
 # so is the namespace: programs may link the libraries in C++ as well.
 get_target_property(of_decoder rlpc_decoder SOURCES)
@@ -65,6 +68,10 @@ foreach(name rlpc_dec_objects rlpc_dec rlpc_dec_static)
   # CONTRIBUTING.md says what each is worth.
   target_compile_options(${name} PRIVATE
     $<$<CONFIG:Release>:-Os> -ffunction-sections -fdata-sections)
+endforeach()
+
+foreach(name rlpc_dec_objects rlpc_dec rlpc_dec_static)
+  rlpc_unity(${name})
 endforeach()
 
 # The shared library is optimised at the link step. What the objects carry for it is removed from
