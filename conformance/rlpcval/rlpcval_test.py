@@ -232,6 +232,8 @@ class Suite(ToolsTest):
                     self.assertEqual(first, [])
                 if sidecar["expect"] == "either":
                     self.assertTrue({f["id"] for f in failures} & set(sidecar["rules"]))
+                places = [(f["id"], f["element"], f["bit"], str(f["unit"])) for f in failures]
+                self.assertEqual(len(places), len(set(places)), "a finding is reported twice")
         rules = json.loads((ROOT / "spec" / "rules.json").read_text(encoding="utf-8"))
         self.assertEqual({rule["rule"] for rule in rules} - seen, set())
 

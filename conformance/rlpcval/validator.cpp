@@ -24,9 +24,9 @@ void StreamValidator::run() {
     check_due_frames();
     end_rigs();
     findings_.in_unit(std::nullopt);
-    for (const GofIndexCheck& index : index_.checks) {
-      compare_index(index);
-      compare_rigs(index);
+    for (const SeenIndex& seen : index_.units) {
+      compare_index(seen);
+      compare_rigs(seen);
     }
     warn_of_stream();
   } else {

@@ -15,6 +15,7 @@
 #include "decoder/codec/parse/parse_gof_hash.h"
 #include "decoder/codec/parse/sequence/parse_clip_table.h"
 #include "decoder/codec/parse/sequence/parse_connectivity.h"
+#include "decoder/codec/parse/sequence/parse_end_of_sequence.h"
 #include "decoder/codec/parse/sequence/parse_metadata.h"
 #include "decoder/codec/parse/sequence/parse_vertex_order.h"
 #include "decoder/codec/units/exceeded_limit.h"
@@ -79,7 +80,7 @@ bool StreamValidator::can_read() {
 // 6.3 sequence_header( )
 void StreamValidator::sequence_header(const UnitHeader& unit, const Payload& payload) {
   if (lead_.header) return;  // in the wrong place, already reported
-  ElementReader r(payload, unit.payload_offset() * 8, findings_);
+  ElementReader r(unit, payload, findings_);
   lead_.header = check_sequence_header(r, units_.version_minor());
   lead_.header_bit_pos = unit.payload_offset() * 8;
   lead_.header_suspect = findings_.suspect() || r.failures() > 0;
@@ -155,7 +156,7 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
   findings_.suspect(damaged || frames_suspect_);
   // A surplus GOF has been reported; it may be a copy of any other.
   const bool surplus = gof_.expected_first_frame == lead_.header->header.num_frames;
-  ElementReader r(payload, unit.payload_offset() * 8, findings_);
+  ElementReader r(unit, payload, findings_);
   const std::uint32_t num_layers =
       lead_.context.meshes ? (*lead_.context.meshes)[Prediction::kLayers].num_layers() : 0;
   const GofHeaderCheck header =
@@ -164,7 +165,7 @@ void StreamValidator::gof(const UnitHeader& unit, const Payload& payload) {
   const bool may_be_any = damaged || !header.kind;
   gof_.may_have_slices = may_be_any || slice_type(*header.kind) == UnitType::kSlice;
   gof_.may_have_frames = may_be_any || slice_type(*header.kind) == UnitType::kFrame;
-  gof_.slice_counts = header.slices;
+  gof_.unit_counts = header.units;
   frames_suspect_ = r.failures() > 0 || damaged || surplus;
   gof_.num_frames = header.num_frames;
   if (header.num_frames > 0) {
@@ -210,15 +211,15 @@ template <class Parser>
 void StreamValidator::slice_of(Current<Parser>& current, const UnitHeader& unit,
                                const Payload& payload) {
   const bool is_frame = unit.type() == UnitType::kFrame;
-  if (!current.unit || !current.slice_counts ||
-      is_frame != (current.slice_counts->frames > 0)) {
+  if (!current.unit || !is_known(current.unit_counts) ||
+      is_frame != std::holds_alternative<FrameCounts>(current.unit_counts)) {
     report_.complete = false;
     return;
   }
   current.suspect = current.suspect || findings_.suspect();
   findings_.suspect(current.suspect);
-  ElementReader header(payload, unit.payload_offset() * 8, findings_);
-  bool read = check_slice_header(header, *current.slice_counts);
+  ElementReader header(unit, payload, findings_);
+  bool read = check_unit_header(header, lead_.header->header, current.unit_counts);
   if (read && current.parser) {
     BitReader r = bits_of(unit, payload);
     const auto result = current.parser->slice(r, unit.offset * 8, unit.end() - unit.offset);
@@ -362,16 +363,16 @@ void StreamValidator::compare_hashes(const UnitHeader& unit, const GofHash& hash
 // 6.9 gof_index( ): compared with the GOFs when all are known.
 void StreamValidator::gof_index(const UnitHeader& unit, const Payload& payload) {
   if (!can_read()) return;
-  ElementReader r(payload, unit.payload_offset() * 8, findings_, Checked::kNotByDecoding);
+  ElementReader r(unit, payload, findings_, Checked::kNotByDecoding);
   SequenceHeader header = lead_.header->header;
   if (header.open_end_flag && next_frame_) header.num_frames = *next_frame_;
-  index_.checks.push_back(check_gof_index(r, header, options_.limits.max_memory_bytes));
-  index_.checks.back().unit = FindingUnit{report_.units, unit.type_byte, unit.offset};
-  index_.checks.back().suspect = findings_.suspect();
-  if (index_.checks.back().too_large) {
-    findings_.error(
-        {Errc::kLimitExceeded, "", "num_index_gofs_minus1", unit.payload_offset() * 8});
+  GofIndex index = parse_index_lists(r.bits(), header, options_.limits.max_memory_bytes);
+  const FindingUnit place{report_.units, unit.type_byte, unit.offset};
+  if (r.failures() == 0) {
+    index_.units.push_back({place, findings_.suspect(), std::move(index)});
   }
+  r.bits().byte_alignment();
+  r.bits().expect_end();
 }
 
 // 6.10 metadata( )
@@ -404,17 +405,10 @@ void StreamValidator::clip_table(const UnitHeader& unit, const Payload& payload)
 
 // 6.8 end_of_sequence( )
 void StreamValidator::end_of_sequence(const UnitHeader& unit, const Payload& payload) {
-  ElementReader r(payload, unit.payload_offset() * 8, findings_);
-  const auto distance = static_cast<std::uint64_t>(r.u(32, "index_distance"));
-  const bool is_open_ended =
-      lead_.header && lead_.header->usable && lead_.header->header.open_end_flag;
-  std::int64_t num_frames = 0;
-  if (is_open_ended) {
-    num_frames = r.u(32, "num_sequence_frames");
-    r.require(num_frames <= kMaxFrames, "R-LVL-03",
-              "a sequence has at most " + std::to_string(kMaxFrames) + " frames");
-  }
-  r.expect_end();
+  ElementReader r(unit, payload, findings_);
+  const bool has_header = lead_.header && lead_.header->usable;
+  const SequenceHeader header = has_header ? lead_.header->header : SequenceHeader{};
+  const auto [distance, num_frames] = parse_end_of_sequence(r.bits(), header);
   const bool follows_index = previous_ && previous_->type() == UnitType::kGofIndex;
   const bool leads_to_it = follows_index && previous_->offset + distance == unit.offset;
   if (leads_to_it) ++index_.units_found;
@@ -427,13 +421,12 @@ void StreamValidator::end_of_sequence(const UnitHeader& unit, const Payload& pay
                        std::to_string(unit.offset - previous_->offset) + " bytes before"
                  : "the unit directly before is no GOF index unit"));
   }
-  if (!lead_.header || !lead_.header->usable) return;
+  if (!has_header) return;
   findings_.suspect(findings_.suspect() || lead_.header_suspect || frames_suspect_);
-  if (!is_open_ended) num_frames = lead_.header->header.num_frames;
   if (next_frame_ && *next_frame_ != num_frames && r.readable()) {
     findings_.error({Errc::kInvalid, "R-END-01", "unit_type", unit.offset * 8},
                     "the GOFs have " + std::to_string(*next_frame_) + " frames, the " +
-                        (is_open_ended ? "end_of_sequence unit" : "sequence header") +
+                        (header.open_end_flag ? "end_of_sequence unit" : "sequence header") +
                         " announces " + std::to_string(num_frames));
   }
 }

@@ -29,13 +29,13 @@ void StreamValidator::begin_rig(const UnitHeader& unit) {
 // 6.13 rig( )
 void StreamValidator::rig(const UnitHeader& unit, const Payload& payload) {
   if (!can_read()) return doubt_models();
-  ElementReader r(payload, unit.payload_offset() * 8, findings_);
+  ElementReader r(unit, payload, findings_);
   const std::uint32_t num_layers =
       lead_.context.meshes ? (*lead_.context.meshes)[Prediction::kLayers].num_layers() : 0;
   const bool damaged = findings_.suspect();
   const RigHeaderCheck header = check_rig_header(r, lead_.header->header, num_layers);
   rig_.rig_idx = header.rig_idx;
-  rig_.slice_counts = header.slices;
+  rig_.unit_counts = header.units;
   rig_.suspect = damaged || lead_.connectivity_suspect;
   if (!header.rig_idx || damaged) {
     index_.rig_indices_known = false;

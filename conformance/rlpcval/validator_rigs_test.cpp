@@ -94,8 +94,8 @@ TEST(ValidatorRigs, ReportsTooManyAdaptiveValues) {
     const Bytes payload = w.take();
     ValidationReport report;
     FindingList findings(report, 10);
-    ElementReader r(payload, 0, findings);
-    EXPECT_TRUE(check_rig_header(r, header, 1).slices);
+    ElementReader r(UnitHeader{}, payload, findings);
+    EXPECT_TRUE(is_known(check_rig_header(r, header, 1).units));
     EXPECT_EQ(ids(report), adaptive == 128   ? Ids{}
                            : adaptive == 129 ? Ids{"R-LVL-09"}
                                              : Ids{"R-BON-06"});

@@ -20,6 +20,7 @@
 #include "decoder/codec/kinds/skinned/parse/rig_parser.h"
 #include "decoder/codec/parse/memory_limit.h"
 #include "decoder/codec/parse/parse_gof_hash.h"
+#include "decoder/codec/parse/sequence/parse_gof_index.h"
 #include "decoder/codec/recon/rig_recons.h"
 #include "decoder/codec/units/access_unit_parser.h"
 
@@ -95,8 +96,13 @@ class StreamValidator {
   void end_rigs();
 
   // validator_summary.cpp: findings that need the whole stream.
-  void compare_index(const GofIndexCheck& index);
-  void compare_rigs(const GofIndexCheck& index);
+  struct SeenIndex {
+    FindingUnit place;
+    bool suspect = false;
+    GofIndex index;
+  };
+  void compare_index(const SeenIndex& seen);
+  void compare_rigs(const SeenIndex& seen);
   void warn_of_stream();
   void warn_of_level();
 
@@ -140,7 +146,7 @@ class StreamValidator {
     std::optional<UnitHeader> unit;  // none unless it, or a slice of it, is directly before
     FindingUnit place;
     bool suspect = false;
-    std::optional<SliceCounts> slice_counts;
+    UnitCounts unit_counts;  // of the units after it
     std::unique_ptr<Parser> parser;
   };
   template <class Parser>
@@ -174,7 +180,7 @@ class StreamValidator {
     std::size_t known_first_frames = 0;
     std::vector<RigLocation> rigs;  // all rig units
     bool rig_indices_known = true;
-    std::vector<GofIndexCheck> checks;
+    std::vector<SeenIndex> units;   // all GOF index units that could be read
     std::uint64_t units_found = 0;  // units that index_distance leads to
   };
   Index index_;

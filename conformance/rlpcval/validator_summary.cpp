@@ -17,11 +17,12 @@ constexpr std::uint64_t kMaxFrameRate = 1000;
 }  // namespace
 
 // 7.9: the first frames and the offsets are those of the GOF units.
-void StreamValidator::compare_index(const GofIndexCheck& index) {
-  if (!index.readable || gap_) return;
-  findings_.in_unit(index.unit);
-  findings_.suspect(index.suspect || frames_suspect_);
-  const std::uint64_t at = (index.unit.offset + kUnitHeaderBytes) * 8;
+void StreamValidator::compare_index(const SeenIndex& seen) {
+  if (gap_) return;
+  const GofIndex& index = seen.index;
+  findings_.in_unit(seen.place);
+  findings_.suspect(seen.suspect || frames_suspect_);
+  const std::uint64_t at = (seen.place.offset + kUnitHeaderBytes) * 8;
   const bool frames_known = index_.known_first_frames == index_.gofs.size();
   const std::size_t common = std::min(index.gofs.size(), index_.gofs.size());
   for (std::size_t g = 0; g < common; ++g) {
@@ -46,19 +47,20 @@ void StreamValidator::compare_index(const GofIndexCheck& index) {
                                std::to_string(index.gofs.size()) + " GOFs are listed, there " +
                                    "are " + std::to_string(index_.gofs.size()) + " GOF units");
   }
-  if (index.end <= index.gofs.back().offset || index.end > index.unit.offset) {
+  if (index.end <= index.gofs.back().offset || index.end > seen.place.offset) {
     findings_.unchecked("R-IDX-03", "index_gof_bytes", at,
                         "the last GOF is listed up to byte " + std::to_string(index.end) +
-                            ", the index unit is at byte " + std::to_string(index.unit.offset));
+                            ", the index unit is at byte " + std::to_string(seen.place.offset));
   }
 }
 
 // 7.9: the list has all rig units.
-void StreamValidator::compare_rigs(const GofIndexCheck& index) {
-  if (!index.readable || gap_) return;
-  findings_.in_unit(index.unit);
-  findings_.suspect(index.suspect || !index_.rig_indices_known);
-  const std::uint64_t at = (index.unit.offset + kUnitHeaderBytes) * 8;
+void StreamValidator::compare_rigs(const SeenIndex& seen) {
+  if (gap_) return;
+  const GofIndex& index = seen.index;
+  findings_.in_unit(seen.place);
+  findings_.suspect(seen.suspect || !index_.rig_indices_known);
+  const std::uint64_t at = (seen.place.offset + kUnitHeaderBytes) * 8;
   const std::size_t common = std::min(index.rigs.size(), index_.rigs.size());
   for (std::size_t m = 0; m < common; ++m) {
     const RigLocation& listed = index.rigs[m];

@@ -13,6 +13,12 @@ namespace rlpc {
 // left in `r`.
 std::uint32_t parse_first_frame(BitReader& r, Range range);
 
+// Parse the elements after it. frames_left: frames of the sequence from the first of the GOF
+// on. Errors are left in `r`.
+std::uint32_t parse_num_gof_frames(BitReader& r, const SequenceHeader& header,
+                                   std::uint32_t frames_left);
+GofKind parse_gof_kind(BitReader& r, const SequenceHeader& header);
+
 // Parses the header. expected_first_frame: below num_frames of the sequence. Errors are left in
 // `r`.
 GofHeader parse_gof_header(BitReader& r, const SequenceHeader& header,

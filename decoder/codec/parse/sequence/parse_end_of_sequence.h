@@ -18,9 +18,7 @@ inline EndOfSequence parse_end_of_sequence(BitReader& r, const SequenceHeader& h
   if (header.open_end_flag) {
     const std::uint64_t at = r.bit_pos();
     end.num_frames = r.u(32, "num_sequence_frames");
-    if (!r.error() && end.num_frames > kMaxFrames) {
-      r.fail(Errc::kInvalid, "R-LVL-03", "num_sequence_frames", at);
-    }
+    r.require({"num_sequence_frames", end.num_frames, at}, {0, kMaxFrames}, "R-LVL-03");
   }
   r.expect_end();
   return end;

@@ -24,7 +24,12 @@ struct RigLocation {
 struct GofIndex {
   Vector<GofLocation> gofs;
   Vector<RigLocation> rigs;
+  std::uint64_t end = 0;  // end of the bytes of the last GOF
 };
+
+// Parses the lists, up to the alignment. max_bytes: memory that each may take. Errors are left
+// in `r`.
+GofIndex parse_index_lists(BitReader& r, const SequenceHeader& header, std::uint64_t max_bytes);
 
 // 6.9 gof_index( ). Offsets are not checked against the units here.
 Result<GofIndex> parse_gof_index(BitReader& r, const SequenceHeader& header);

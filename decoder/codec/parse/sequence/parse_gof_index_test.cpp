@@ -78,13 +78,12 @@ TEST(ParseGofIndex, OffsetsBeyond32BitsAddUp) {
 TEST(ParseGofIndex, FramesOfTheGofsAreThoseOfTheSequence) {
   EXPECT_TRUE(parse(payload_of(1, {{2, 9}, {3, 9}}), 7));
   // One frame fewer than the sequence has, and one more.
-  expect_invalid(parse(payload_of(1, {{2, 9}, {2, 9}}), 7), "R-IDX-01",
-                 "num_index_gofs_minus1");
+  expect_invalid(parse(payload_of(1, {{2, 9}, {2, 9}}), 7), "R-IDX-01", "index_gof_bytes");
   expect_invalid(parse(payload_of(1, {{2, 9}, {4, 9}}), 7), "R-IDX-01",
                  "index_gof_frames_minus1");
   // The GOFs before the last one already have all frames.
   expect_invalid(parse(payload_of(2, {{2, 9}, {3, 9}, {0, 9}}), 7), "R-IDX-01",
-                 "num_index_gofs_minus1");
+                 "index_gof_bytes");
   expect_invalid(parse(payload_of(0, {{7, 9}}), 7), "R-IDX-01", "index_gof_frames_minus1");
 }
 

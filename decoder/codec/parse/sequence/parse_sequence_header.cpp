@@ -8,26 +8,28 @@ namespace {
 // Fails with kUnsupported, not kInvalid: this version does not define the profile or level.
 void expect_supported(BitReader& r, bool supported, const char* rule, const char* element,
                       std::uint64_t at) {
-  if (!r.error() && !supported) r.fail(Errc::kUnsupported, rule, element, at);
+  if (!supported) r.fail(Errc::kUnsupported, rule, element, at);
 }
 
 }  // namespace
 
 // 6.3 sequence_header( )
-Result<SequenceHeader> parse_sequence_header(BitReader& r, std::uint32_t version_minor,
-                                             SequenceHeaderPlaces* places) {
+SequenceHeader parse_sequence_header(BitReader& r, std::uint32_t version_minor,
+                                     SequenceHeaderPlaces& p) {
   constexpr std::int64_t kAny = 0xFFFFFFFE;
   SequenceHeader h;
-  SequenceHeaderPlaces p;
   std::uint64_t at = r.bit_pos();
   h.profile_idc = r.u(8, "profile_idc");
   expect_supported(r, h.profile_idc <= version_minor, "R-HDR-01", "profile_idc", at);
-  if (!r.error() && h.profile_idc != version_minor) return unsupported_minor_version();
+  if (h.profile_idc != version_minor) {
+    const Error error = unsupported_minor_version();
+    expect_supported(r, false, error.rule, error.element, error.bit_pos);
+  }
   at = r.bit_pos();
   h.level_idc = r.u(8, "level_idc");
   expect_supported(r, h.level_idc >= 1 && h.level_idc <= kMaxLevelIdc, "R-HDR-02", "level_idc",
                    at);
-  if (r.error()) return *r.error();
+  if (r.stopped()) return h;
   const Level& level = h.level();
   p.num_vertices_minus1 = r.bit_pos();
   h.num_vertices =
@@ -41,6 +43,7 @@ Result<SequenceHeader> parse_sequence_header(BitReader& r, std::uint32_t version
   if (!h.open_end_flag) {
     h.num_frames = r.ue("num_frames_minus1", {0, std::int64_t{kMaxFrames} - 1}, "R-LVL-03") + 1;
   }
+  if (r.stopped()) return h;
   p.frame_rate_numerator_minus1 = r.bit_pos();
   h.frame_rate.numerator = r.ue("frame_rate_numerator_minus1", {0, kAny}, "R-HDR-03") + 1;
   h.frame_rate.denominator = r.ue("frame_rate_denominator_minus1", {0, kAny}, "R-HDR-03") + 1;
@@ -52,6 +55,13 @@ Result<SequenceHeader> parse_sequence_header(BitReader& r, std::uint32_t version
       r.u(5, "position_bits", {kMinPositionBits, kMaxPositionBits}, "R-HDR-06"));
   r.byte_alignment();
   r.expect_end();
+  return h;
+}
+
+Result<SequenceHeader> parse_sequence_header(BitReader& r, std::uint32_t version_minor,
+                                             SequenceHeaderPlaces* places) {
+  SequenceHeaderPlaces p;
+  const SequenceHeader h = parse_sequence_header(r, version_minor, p);
   if (r.error()) return *r.error();
   if (places != nullptr) *places = p;
   return h;

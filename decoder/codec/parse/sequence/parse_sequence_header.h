@@ -16,7 +16,11 @@ struct SequenceHeaderPlaces {
   std::uint64_t frame_rate_numerator_minus1 = 0;
 };
 
-// 6.3 sequence_header( ). `r` covers exactly the payload of the unit. places: may be null.
+// 6.3 sequence_header( ). `r` covers exactly the payload of the unit. Errors are left in `r`;
+// if it stops before the frame rate, the place of that is 0.
+SequenceHeader parse_sequence_header(BitReader& r, std::uint32_t version_minor,
+                                     SequenceHeaderPlaces& places);
+// Returns the header, or the first error. places: may be null.
 Result<SequenceHeader> parse_sequence_header(BitReader& r, std::uint32_t version_minor,
                                              SequenceHeaderPlaces* places = nullptr);
 

@@ -216,12 +216,9 @@ void ClusterSectionParser::parse() {
 }  // namespace
 
 // 6.5 clusters_of_gof( )
-Result<ClusterGof> parse_clusters(BitReader& r, const SequenceHeader& header,
-                                  const Topology& topology, const GofHeader& gof_header,
-                                  const MemoryLimit& memory) {
+std::uint32_t parse_clusters_header(BitReader& r, const SequenceHeader& header,
+                                    ClusterGof& gof) {
   const Level& level = header.level();
-  ClusterGof gof;
-  static_cast<GofHeader&>(gof) = gof_header;
   const std::uint32_t num_clusters =
       r.ue("num_clusters_minus1", {0, std::int64_t{level.max_clusters} - 1}, "R-LVL-06") + 1;
   gof.fraction_bits =
@@ -231,6 +228,15 @@ Result<ClusterGof> parse_clusters(BitReader& r, const SequenceHeader& header,
       static_cast<int>(r.u(3, "seed_predictor", {0, kMaxPredictorOrder}, "R-GOF-05"));
   gof.seed_coupling_flag = r.flag("seed_coupling_flag");
   r.byte_alignment();
+  return num_clusters;
+}
+
+Result<ClusterGof> parse_clusters(BitReader& r, const SequenceHeader& header,
+                                  const Topology& topology, const GofHeader& gof_header,
+                                  const MemoryLimit& memory) {
+  ClusterGof gof;
+  static_cast<GofHeader&>(gof) = gof_header;
+  const std::uint32_t num_clusters = parse_clusters_header(r, header, gof);
   if (r.error()) return *r.error();
   gof.clusters.resize(num_clusters);
   ClusterSectionParser(r, header, topology, gof, memory).parse();

@@ -15,6 +15,11 @@
 
 namespace rlpc {
 
+// 6.5 clusters_of_gof( ), up to its section. Returns the number of clusters. Errors are left in
+// `r`.
+std::uint32_t parse_clusters_header(BitReader& r, const SequenceHeader& header,
+                                    ClusterGof& gof);
+
 // 6.5 clusters_of_gof( ): the rest of the payload, where `r` ends. Checks every size against
 // the level, and the memory of the factors against the limit, before allocating.
 Result<ClusterGof> parse_clusters(BitReader& r, const SequenceHeader& header,

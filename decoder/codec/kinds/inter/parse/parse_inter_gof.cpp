@@ -10,7 +10,6 @@
 #include "decoder/codec/kinds/inter/parse/inter_memory.h"
 #include "decoder/codec/kinds/inter/parse/parse_frame_pattern.h"
 #include "decoder/codec/parse/parse_cluster_map.h"
-#include "decoder/codec/parse/parse_layers.h"
 #include "decoder/codec/parse/parse_rest_residuals.h"
 #include "decoder/codec/parse/rig_memory.h"
 #include "decoder/codec/parse/section_reader.h"
@@ -25,48 +24,11 @@ bool InterGofParser::has_memory(BitReader& r, std::uint64_t more, const char* st
   return false;
 }
 
-// 6.14 frames_of_gof( ): the settings of weights
-void InterGofParser::weights(BitReader& r) {
-  gof_.weights.damping_log2 = static_cast<int>(r.u(4, "damping_log2"));
-  gof_.weights.outer_weight = static_cast<int>(r.u(4, "outer_weight"));
-  gof_.weights.outer_scale = static_cast<int>(r.u(4, "outer_scale"));
-  const std::uint64_t at = r.bit_pos();
-  gof_.learning_flag = r.flag("learning_flag");
-  if (!gof_.learning_flag) return;
-  const std::uint64_t vertices =
-      std::uint64_t{header_.num_vertices} * gof_.pattern.temporal_layers;
-  if (!r.error() && vertices > header_.level().max_learning_vertices) {
-    r.fail(Errc::kInvalid, "R-LVL-10", "learning_flag", at);
-  }
-  gof_.prime_log2 = static_cast<int>(r.u(4, "prime_log2"));
-}
-
 // 6.14 frames_of_gof( )
 Result<bool> InterGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   const std::uint64_t at = r.bit_pos();
   static_cast<GofHeader&>(gof_) = gof_header;
-  gof_.pattern = parse_frame_pattern(r);
-  if (r.error()) return *r.error();
-  gof_.exact_flag = r.flag("exact_flag");
-  gof_.step.assign(gof_.pattern.num_depths(), kExactInterStep);
-  for (std::uint32_t& step : gof_.step) {
-    if (gof_.exact_flag) break;
-    step = r.ue("frame_step_minus1", {0, std::int64_t{kMaxInterStep} - 1}, "R-FRM-01") + 1;
-  }
-  weights(r);
-  gof_.frame_hash_flag = r.flag("frame_hash_flag");
-  const std::uint64_t values = 3 * std::uint64_t{header_.num_vertices};
-  const auto most = static_cast<std::int64_t>(header_.level().max_gof_factors / values);
-  gof_.max_earlier_distance = r.ue("max_earlier_distance", {0, most}, "R-LVL-05");
-  const auto groups = parse_layer_groups(r, mesh_.num_layers());
-  if (!groups.empty()) gof_.layer_group_size = groups;
-  gof_.layer_step.assign(mesh_.num_layers(), kMaxLayerStep);
-  if (!gof_.exact_flag) parse_layer_steps(r, gof_.layer_step);
-  if (gof_.layer_group_size.size() == 1) gof_.rest = parse_rest_settings(r, gof_.exact_flag);
-  gof_.num_patches =
-      r.ue("num_patches", {0, std::int64_t{header_.level().max_clusters}}, "R-LVL-06");
-  r.byte_alignment();
-  if (gof_.num_patches == 0) r.expect_end();
+  parse_inter_settings(r, header_, mesh_.num_layers(), gof_);
   if (r.error()) return *r.error();
   memory_bytes_ = memory_of_frames(header_.num_vertices, gof_.num_frames, gof_);
   if (!has_memory(r, 0, "frames_of_gof", at)) return *r.error();
@@ -98,18 +60,12 @@ void InterGofParser::patch_map(BitReader& r) {
   patch_contexts_.emplace(gof_.num_patches, gof_.pattern.num_depths());
 }
 
-FrameUnitStart parse_frame_unit_start(BitReader& r, const SequenceHeader& header,
-                                      std::uint32_t num_frames) {
-  FrameUnitStart start;
-  start.frame_idx = r.ue("frame_idx", {0, std::int64_t{num_frames} - 1}, "R-FRM-02");
-  if (header.open_end_flag) start.gof_end_flag = r.flag("gof_end_flag");
-  return start;
-}
-
 // 6.14.2 frame_unit( )
 Result<bool> InterGofParser::frame(BitReader& r, std::uint64_t unit_bit_pos) {
   last_unit_.reset();
-  const FrameUnitStart start = parse_frame_unit_start(r, header_, gof_.num_frames);
+  const auto num_groups = static_cast<std::uint32_t>(gof_.layer_group_size.size());
+  const FrameUnitStart start =
+      parse_frame_unit_header(r, header_, {gof_.num_frames, num_groups});
   if (r.error()) return *r.error();
   SliceEntry unit;
   unit.frame_idx = start.frame_idx;
@@ -118,7 +74,7 @@ Result<bool> InterGofParser::frame(BitReader& r, std::uint64_t unit_bit_pos) {
     unit.is_gof_end = true;
     last_unit_ = unit;
   } else {
-    frames_of_group(r, unit, unit_bit_pos);
+    frames_of_group(r, start, unit, unit_bit_pos);
   }
   if (r.error()) return *r.error();
   return true;
@@ -193,25 +149,16 @@ bool InterGofParser::may_follow(const SliceEntry& unit, std::span<const std::uin
 }
 
 // 6.14.2 frames_of_group( )
-void InterGofParser::frames_of_group(BitReader& r, SliceEntry& unit,
-                                     std::uint64_t unit_bit_pos) {
-  const auto num_groups = static_cast<std::int64_t>(gof_.layer_group_size.size());
-  unit.layer_group_idx = r.ue("layer_group_idx", {0, num_groups - 1}, "R-FRM-02");
-  if (r.error()) return;
-  const std::uint32_t group = unit.layer_group_idx;
+void InterGofParser::frames_of_group(BitReader& r, const FrameUnitStart& start,
+                                     SliceEntry& unit, std::uint64_t unit_bit_pos) {
+  const std::uint32_t group = start.layer_group_idx;
+  unit.layer_group_idx = group;
+  unit.num_frames = static_cast<std::uint32_t>(start.unit_frames_minus1.value) + 1;
   const std::uint32_t first = order_->place_of(unit.frame_idx);
   unit.temporal_layer_idx = gof_.pattern.temporal_layer((*order_)[first].depth);
-  Vector<std::uint32_t> places{first};
-  if (num_groups == 1) {
-    const std::uint64_t at = r.bit_pos();
-    const std::int64_t most = std::int64_t{gof_.num_frames} - 1;
-    unit.num_frames = r.ue("unit_frames_minus1", {0, most}, "R-FRM-09") + 1;
-    if (r.error()) return;
-    places = unit_places(unit);
-    if (places.size() < unit.num_frames) {
-      r.fail(Errc::kInvalid, "R-FRM-09", "unit_frames_minus1", at);
-      return;
-    }
+  const Vector<std::uint32_t> places = unit_places(unit);
+  if (!r.require(start.unit_frames_minus1, places.size() == unit.num_frames, "R-FRM-09")) {
+    return;
   }
   if (group >= end_layer_group_ || unit.temporal_layer_idx >= end_temporal_layer_) {
     is_cut_ = true;

@@ -15,21 +15,13 @@
 #include "common/codec/syntax/sequence_header.h"
 #include "common/memory/owned.h"
 #include "common/result.h"
+#include "decoder/codec/kinds/inter/parse/parse_inter_headers.h"
 #include "decoder/codec/parse/gof_parser.h"
 #include "decoder/codec/parse/memory_limit.h"
 #include "decoder/codec/parse/section_reader.h"
 #include "decoder/codec/slice_cut.h"
 
 namespace rlpc {
-
-// Beginning of 6.14.2 frame_unit( ).
-struct FrameUnitStart {
-  std::uint32_t frame_idx = 0;
-  bool gof_end_flag = false;
-};
-// Parses the beginning of a frame unit. num_frames: frames of the GOF. Errors are left in `r`.
-FrameUnitStart parse_frame_unit_start(BitReader& r, const SequenceHeader& header,
-                                      std::uint32_t num_frames);
 
 // Parses a GOF unit and the frame units after it. Checks every size against the level, and the
 // memory it needs against the limit, before allocating. Layer groups outside the cut are
@@ -69,10 +61,10 @@ class InterGofParser final : public GofParser {
   AnyGof take_gof() override { return finish(); }
 
  private:
-  void weights(BitReader& r);
   void patch_map(BitReader& r);
   void end_gof(BitReader& r, std::uint32_t num_frames, std::uint64_t unit_bit_pos);
-  void frames_of_group(BitReader& r, SliceEntry& unit, std::uint64_t unit_bit_pos);
+  void frames_of_group(BitReader& r, const FrameUnitStart& start, SliceEntry& unit,
+                       std::uint64_t unit_bit_pos);
   // Returns the places of the frames of a unit; fewer than it declares if the GOF has fewer.
   Vector<std::uint32_t> unit_places(const SliceEntry& unit) const;
   // Returns the first place of a frame of a temporal layer that lacks a layer group, or the

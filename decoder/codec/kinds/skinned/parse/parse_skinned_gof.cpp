@@ -7,8 +7,6 @@
 #include "common/memory/owned.h"
 #include "decoder/codec/kinds/skinned/parse/bone_parser.h"
 #include "decoder/codec/kinds/skinned/parse/parse_slice.h"
-#include "decoder/codec/parse/parse_layers.h"
-#include "decoder/codec/parse/parse_rest_residuals.h"
 #include "decoder/codec/parse/rig_memory.h"
 #include "decoder/codec/parse/section_reader.h"
 
@@ -23,32 +21,6 @@ static_assert(std::all_of(kLevels.begin(), kLevels.end(), [](const Level& level)
 }));
 
 }  // namespace
-
-std::uint32_t parse_rig_idx(BitReader& r) { return r.u(3, "rig_idx"); }
-
-// 6.11 layers_of_rig( )
-void SkinnedGofParser::layers(BitReader& r) {
-  gof_.layer_group_size = {mesh_->num_layers()};
-  gof_.layer_step.assign(mesh_->num_layers(), kMaxLayerStep);
-  if (gof_.prediction != Prediction::kLayers) return;
-  gof_.weights.damping_log2 = static_cast<int>(r.u(4, "damping_log2"));
-  gof_.weights.outer_weight = static_cast<int>(r.u(4, "outer_weight"));
-  gof_.weights.outer_scale = static_cast<int>(r.u(4, "outer_scale"));
-  if (header_.profile_idc >= kProfileHigh) {
-    const std::uint64_t at = r.bit_pos();
-    gof_.weights.num_adaptive_factors =
-        r.ue("num_adaptive_factors", {0, header_.level().max_components}, "R-BON-06");
-    const std::uint64_t adaptive_values =
-        std::uint64_t{gof_.weights.num_adaptive_factors} * header_.num_vertices;
-    if (!r.error() && adaptive_values > header_.level().max_adaptive_values) {
-      r.fail(Errc::kInvalid, "R-LVL-09", "num_adaptive_factors", at);
-    }
-  }
-  const auto groups = parse_layer_groups(r, mesh_->num_layers());
-  if (groups.empty()) return;
-  gof_.layer_group_size = groups;
-  parse_layer_steps(r, gof_.layer_step);
-}
 
 // Checks NumFactors and the memory.
 void SkinnedGofParser::count_factors(SectionReader& section, const Factors& factors,
@@ -104,30 +76,17 @@ void SkinnedGofParser::SliceState::start(std::uint32_t num_frames, std::uint32_t
   last_temporal_layer = 0;
 }
 
-// 6.11 rig_header( )
-void SkinnedGofParser::rig_header(BitReader& r) {
-  const Level& level = header_.level();
-  const std::uint32_t num_bones =
-      r.ue("num_bones_minus1", {0, std::int64_t{level.max_clusters} - 1}, "R-LVL-06") + 1;
-  gof_.fraction_bits =
-      static_cast<int>(r.u(5, "fraction_bits", {0, kMaxFractionBits}, "R-GOF-03"));
-  gof_.weight_bits = static_cast<int>(r.u(3, "weight_bits"));
-  gof_.rest_step = r.ue("rest_step_minus1", {0, kMaxRestStep - 1}, "R-BON-01") + 1;
-  gof_.num_component_groups =
-      r.ue("num_component_groups", {0, kMaxComponentGroups}, "R-BON-02");
-  gof_.prediction = static_cast<Prediction>(r.u(2, "prediction_idc"));
-  if (r.error()) return;
-  mesh_ = &meshes_[gof_.prediction];
-  layers(r);
-  if (header_.profile_idc >= kProfileHigh) gof_.rest = parse_rest_settings(r, false);
-  if (!r.error()) gof_.bones.resize(num_bones);
-}
-
 // Parses the part of a skinned GOF or shared rig that begins with rig_header( ).
 Result<bool> SkinnedGofParser::rig(BitReader& r) {
-  rig_header(r);
-  r.byte_alignment();
+  const std::uint32_t num_layers = meshes_[Prediction::kLayers].num_layers();
+  const std::uint32_t num_bones = parse_rig_header(r, header_, num_layers, gof_);
   if (r.error()) return *r.error();
+  mesh_ = &meshes_[gof_.prediction];
+  if (gof_.prediction != Prediction::kLayers) {
+    gof_.layer_group_size = {mesh_->num_layers()};
+    gof_.layer_step.assign(mesh_->num_layers(), kMaxLayerStep);
+  }
+  gof_.bones.resize(num_bones);
   bone_section(r);
   if (r.error()) return *r.error();
 
@@ -141,15 +100,6 @@ Result<bool> SkinnedGofParser::rig(BitReader& r) {
   gof_.vertex_residual.emplace_back(kRestFactors * std::size_t{header_.num_vertices});
   if (gof_.rest.counterparts_flag) gof_.counterparts.resize(header_.num_vertices);
   return true;
-}
-
-// 6.11 levels_of_tracks( )
-void SkinnedGofParser::levels_of_tracks(BitReader& r) {
-  gof_.track_levels = static_cast<int>(r.u(3, "track_levels"));
-  if (gof_.track_levels == 0) return;
-  gof_.num_temporal_layers = static_cast<int>(r.u(3, "num_temporal_layers_minus1",
-                                                  {0, gof_.track_levels}, "R-TRK-01")) +
-                             1;
 }
 
 // 8.14.1 StartTemporalLayers( )
@@ -171,7 +121,7 @@ Result<bool> SkinnedGofParser::bones(BitReader& r, const GofHeader& gof_header,
   unit_ = Unit::kGof;
   num_factors_ = 0;
   memory_bytes_ = memory_of_rigs(rigs);
-  if (header_.profile_idc >= kProfileHigh) levels_of_tracks(r);
+  if (header_.profile_idc >= kProfileHigh) parse_levels_of_tracks(r, gof_);
   return rig(r);
 }
 
@@ -195,12 +145,10 @@ Result<bool> SkinnedGofParser::tracks(BitReader& r, const GofHeader& gof_header,
   const std::uint64_t at = r.bit_pos();
   gof_.rig_idx = parse_rig_idx(r);
   gof_.rig = rigs.of_idx[gof_.rig_idx];
-  if (!r.error() && !gof_.rig) r.fail(Errc::kUnsupported, "R-MOD-01", "rig_idx", at);
+  if (!gof_.rig) r.fail(Errc::kUnsupported, "R-MOD-01", "rig_idx", at);
   if (r.error()) return *r.error();
   load_rig();
-  levels_of_tracks(r);
-  gof_.num_local_groups = r.ue(
-      "num_local_groups", {0, kMaxComponentGroups - gof_.num_component_groups}, "R-BON-02");
+  parse_tracks_header(r, gof_.num_component_groups, gof_);
   r.byte_alignment();
   if (r.error()) return *r.error();
   num_factors_ = rigs.num_factors(kMaxRigs);
@@ -268,21 +216,10 @@ std::uint32_t SkinnedGofParser::temporal_layers(std::uint32_t group) const {
   return has_first ? 1 + gof_.temporal_layers[group] : 0;
 }
 
-// 6.12 slice_unit( ), up to its section
-SliceEntry SkinnedGofParser::slice_header(BitReader& r) const {
-  SliceEntry slice;
-  if (gof_.num_temporal_layers > 1) {
-    slice.temporal_layer_idx =
-        r.u(3, "temporal_layer_idx", {0, gof_.num_temporal_layers - 1}, "R-SLI-01");
-  }
-  slice.component_group_idx =
-      r.ue("component_group_idx", {0, gof_.num_component_groups + gof_.num_local_groups},
-           "R-SLI-01");
-  if (slice.temporal_layer_idx == 0) {
-    const auto num_groups = static_cast<std::int64_t>(gof_.layer_group_size.size());
-    slice.layer_group_idx = r.ue("layer_group_idx", {0, num_groups - 1}, "R-SLI-01");
-  }
-  return slice;
+SliceCounts SkinnedGofParser::slice_counts() const {
+  return {gof_.num_component_groups + gof_.num_local_groups,
+          static_cast<std::uint32_t>(gof_.layer_group_size.size()),
+          static_cast<std::uint32_t>(gof_.num_temporal_layers)};
 }
 
 Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos,
@@ -293,7 +230,7 @@ Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos,
 }
 
 bool SkinnedGofParser::drops(BitReader& r) {
-  const SliceEntry slice = slice_header(r);
+  const SliceEntry slice = parse_slice_header(r, slice_counts());
   if (r.error() || kept_.has(slice)) return false;
   gof_.is_cut = true;
   return true;
@@ -301,7 +238,7 @@ bool SkinnedGofParser::drops(BitReader& r) {
 
 // 6.12 slice_unit( )
 Result<bool> SkinnedGofParser::slice(BitReader& r, std::uint64_t unit_bit_pos) {
-  SliceEntry slice = slice_header(r);
+  SliceEntry slice = parse_slice_header(r, slice_counts());
   if (r.error()) return *r.error();
   last_slice_.reset();
   if (!kept_.has(slice)) {

@@ -15,6 +15,7 @@
 #include "common/codec/syntax/sequence_header.h"
 #include "common/memory/owned.h"
 #include "common/result.h"
+#include "decoder/codec/kinds/skinned/parse/parse_skinned_headers.h"
 #include "decoder/codec/parse/gof_parser.h"
 #include "decoder/codec/parse/memory_limit.h"
 #include "decoder/codec/slice_cut.h"
@@ -22,9 +23,6 @@
 namespace rlpc {
 
 class SectionReader;
-
-// Parses rig_idx of a rig unit, or of a skinned GOF with a shared rig.
-std::uint32_t parse_rig_idx(BitReader& r);
 
 // Parses the unit of a skinned GOF or shared rig and the slice units after it. Checks every
 // size against the level, and the memory it needs against the limit, before allocating. Slices
@@ -70,10 +68,7 @@ class SkinnedGofParser final : public GofParser {
   enum class Unit : std::uint8_t { kGof, kRig, kTracks };
 
   Result<bool> rig(BitReader& r);
-  void rig_header(BitReader& r);
-  void levels_of_tracks(BitReader& r);
   void start_temporal_layers();
-  void layers(BitReader& r);
   void load_rig();
   void bone_section(BitReader& r);
   void track_section(BitReader& r);
@@ -101,7 +96,7 @@ class SkinnedGofParser final : public GofParser {
     return unit_ == Unit::kTracks ? group - gof_.num_component_groups : group;
   }
   std::uint32_t temporal_layers(std::uint32_t group) const;
-  SliceEntry slice_header(BitReader& r) const;
+  SliceCounts slice_counts() const;
   bool may_follow(const SliceEntry& slice) const;
 
   const SequenceHeader& header_;
