@@ -107,8 +107,9 @@ void StreamValidator::check_limits() {
 }
 
 MemoryLimit StreamValidator::memory_limit() const {
-  return {options_.limits.max_memory_bytes,
-          memory_of_stream(lead_.header->header, kFramesHeld)};
+  const std::uint64_t max_bytes = options_.limits.max_memory_bytes;
+  if (!lead_.header) return {max_bytes, 0};
+  return {max_bytes, memory_of_stream(lead_.header->header, kFramesHeld)};
 }
 
 // 6.4 Connectivity

@@ -427,6 +427,17 @@ TEST(Validator, ReadsNothingOfWhatItDoesNotSupport) {
   }
 }
 
+TEST(Validator, ReadsMetadataWithoutASequenceHeader) {
+  StreamBytes stream = rich_stream();
+  erase(stream, units_of_type(stream, UnitType::kSequenceHeader).at(0));
+  const UnitPlace first = units_of(stream).at(0);
+  insert(stream, first.offset, write_unit(UnitType::kMetadata, write_metadata("{'a':1}")));
+  const ValidationReport report = validate(stream);
+  EXPECT_FALSE(report.stopped);
+  const Ids found = ids(report);
+  EXPECT_EQ(std::count(found.begin(), found.end(), "R-MET-03"), 1);
+}
+
 TEST(Validator, KeepsToItsLimits) {
   const StreamBytes good = rich_stream();
   ValidationOptions options;
