@@ -245,7 +245,7 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "with a later version."},
     {"R-HDR-02", "7.3", "The level is not known to this version.",
      "level_idc counts from 0, or the stream is of a later version.",
-     "Write level 1, 2, 3 or 4: the lowest whose limits hold."},
+     "Write the lowest level of Table B-1 whose limits hold."},
     {"R-HDR-03", "7.3", "A part of the frame rate is above 2^32 - 1.",
      "A floating-point rate was turned into a fraction without reducing it, or the 0 of an "
      "unknown rate became -1.",

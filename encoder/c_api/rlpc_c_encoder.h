@@ -124,7 +124,7 @@ typedef struct rlpc_encode_options {
   uint32_t components;
   uint32_t keep_order;   // 1: decoders restore the vertex order of the input; 0: they do not
   uint32_t hash_mode;    // default RLPC_HASH_MODE_GOF
-  uint32_t least_level;  // lowest level that the stream may declare, 1 to 4; default 1
+  uint32_t least_level;  // lowest level of Table B-1 that the stream may declare; default 1
   // JSON text for the metadata of the stream, not validated, up to 1 MiB; null: none. Copied.
   const char* metadata;
   // Memory for the handle: rlpc_encoder_bytes() bytes, aligned as by malloc, valid until the

@@ -30,7 +30,7 @@ struct FrameFormat {
   // Largest distance of a vertex from the floats that it is rounded to, in units, if frames are
   // added with their exact numbers. With low delay, Target::kMaxError includes it.
   double max_rounding = 0.0;
-  std::uint32_t least_level = 1;  // lowest level that the stream may declare, 1 to 4
+  std::uint32_t least_level = 1;  // lowest level that the stream may declare, 1 to kMaxLevelIdc
   // High profile: maximum number of frames that are held and encoded together, but at least one
   // GOF. With fewer frames, bytes come sooner, but there are more of them. 0: as many as
   // encode() encodes together, up to 2^23 positions.

@@ -40,12 +40,12 @@ struct Level {
 
 consteval std::uint64_t pow2(int n) { return std::uint64_t{1} << n; }
 
-inline constexpr std::array<Level, 4> kLevels{{
+inline constexpr auto kLevels = std::to_array<Level>({
     {1U << 14, 1U << 15, 512, 256, 512, pow2(22), pow2(23), pow2(25), pow2(21), 1U << 14},
     {1U << 17, 1U << 18, 1024, 512, 1024, pow2(25), pow2(26), pow2(28), pow2(24), 1U << 17},
     {1U << 20, 1U << 21, 4096, 1024, 1024, pow2(28), pow2(29), pow2(31), pow2(27), 1U << 19},
     {1U << 23, 1U << 24, 16384, 1024, 1024, pow2(31), pow2(32), pow2(32), pow2(30), 1U << 21},
-}};
+});
 inline constexpr std::uint32_t kMaxLevelIdc = static_cast<std::uint32_t>(kLevels.size());
 
 // Members are named after the syntax elements; elements named _minus1 are stored as their
