@@ -309,7 +309,7 @@ class GltfErrors(ToolsTest):
     def test_a_point_cache_is_not_for_gltf(self):
         cache = INPUTS / "elephant.pc2"
         words = [f"{TULIP}: a glTF file brings its own animation and takes no --points; leave it "
-                 f"out, or replace this file by the mesh (.obj, .off or .ply) of {cache}"]
+                 "out, or replace this file by the mesh (", f") of {cache}"]
         output = ["-o", self.path("a.rlpc")]
         self.fails(1, words, "rlpcenc", TULIP, "--points", cache, *output)
         self.fails(1, words, "rlpcenc", TULIP, "--points", cache, "--animation", "all", *output)

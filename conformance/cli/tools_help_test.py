@@ -63,6 +63,15 @@ class Help(ToolsTest):
                               ("--kg", "PERCENT")):
             self.assertRegex(self.page("rlpcenc", "--help-all"), rf"  {option} {value}  ")
 
+    def test_the_formats_of_the_input(self):
+        for tool in ("rlpcenc", "rlpccmp"):
+            page = self.page(tool, "--help-all")
+            for kind, extension in (("Meshes", ".obj"), ("Point caches", ".pc2"),
+                                    ("Animations", ".glb")):
+                lists = re.findall(rf"^{kind}: +(\..+ or \.\w+)$", page, re.MULTILINE)
+                self.assertEqual(len(lists), 1, (tool, kind))
+                self.assertIn(extension, lists[0])
+
     def test_the_profile_of_an_option(self):
         groups = self.page("rlpcenc", "--help-all").split("\n\n")
         for heading, options in (("All profiles", ("--profile", "--components", "--partition")),

@@ -27,6 +27,7 @@
 #include "encoder/codec/metrics/metrics.h"
 #include "encoder/codec/metrics/surface_metrics.h"
 #include "encoder/meshes/axes.h"
+#include "encoder/meshes/input_format.h"
 #include "encoder/meshes/open/open_source.h"
 #include "encoder/programs/rlpcenc/report_json.h"
 
@@ -41,22 +42,25 @@ constexpr const char* kExamples = R"(Examples
   rlpccmp frames/ walk.rlpc --csv errors.csv
   rlpccmp old.rlpc new.rlpc --max-kg 0.01 --quiet  a test for scripts)";
 
-constexpr const char* kDetails = R"(A is the original, B the decoded animation. Either is one of
+constexpr const char* kInputs = R"(A is the original, B the decoded animation. Either is one of
   clip.rlpc                       a stream: decoded, its hashes verified, its
                                   bits counted
   clip.rlpd                       decoded positions
   mesh.obj with --points-a/-b     triangles from the mesh, frames from the point
                                   cache
-  clip.pc2, clip.mdd              the same, with the triangles of clip.obj (or
-                                  .ply, .off) next to it
+  clip.pc2                        the same, with the triangles of the mesh of
+                                  that name next to it
   walk.glb, walk.gltf             a glTF 2.0 scene; for the original, repeat the
                                   --animation, --fps and --no-weld of rlpcenc
-  folder/, f_%04d.obj, 'f_*.obj'  one OBJ (PLY, OFF) file per frame, in numeric
-                                  order
+  folder/, f_%04d.obj, 'f_*.obj'  one mesh per frame, in numeric order
   mesh.obj                        one frame; if the other side has several and
-                                  mesh.pc2 (.mdd) is next to it, that cache is
-                                  read as well, and the report mentions it
+                                  a point cache of that name is next to it, that
+                                  cache is read as well, and the report mentions
+                                  it
+)";
 
+// After the list of formats.
+constexpr const char* kDetails = R"(
 The vertices of a stream are in the order of the input only if it was encoded
 with --keep-order. Otherwise pass the file that rlpcenc --order-map wrote.
 
@@ -123,13 +127,13 @@ void add_options(CLI::App& app, Options& o) {
   const std::string more = "More input";
   app.add_option("A", o.a.path, "The original animation")->required();
   app.add_option("B", o.b.path, "The decoded animation, or its stream")->required();
-  const auto add_file = [&](const char* name, std::string& value, const char* what) {
+  const auto add_file = [&](const char* name, std::string& value, const std::string& what) {
     return app.add_option(name, value, what)->option_text("FILE");
   };
-  add_file("--points-a,--points", o.a.points, "Point cache (.pc2, .mdd) with the frames of A")
-      ->group(input);
-  add_file("--points-b", o.b.points, "Point cache (.pc2, .mdd) with the frames of B")
-      ->group(input);
+  const std::string cache =
+      "Point cache (" + rlpc::extensions_text({rlpc::InputFormat::Holds::kPoints}) + ") ";
+  add_file("--points-a,--points", o.a.points, cache + "with the frames of A")->group(input);
+  add_file("--points-b", o.b.points, cache + "with the frames of B")->group(input);
   add_file("--order-map", o.order_map,
            "Index in A of each vertex of B, from rlpcenc --order-map")
       ->group(input);
@@ -186,7 +190,10 @@ void add_options(CLI::App& app, Options& o) {
       ->transform(CLI::AsSizeValue(true))
       ->option_text("SIZE")
       ->group(more);
-  rlpc::add_help(app, {"A B [OPTIONS]", {input, output}, kExamples, kDetails}, RLPC_VERSION);
+  rlpc::add_help(
+      app,
+      {"A B [OPTIONS]", {input, output}, kExamples, kInputs + rlpc::formats_text() + kDetails},
+      RLPC_VERSION);
 }
 
 int complain(const std::string& message) {

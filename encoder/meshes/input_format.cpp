@@ -45,6 +45,12 @@ std::string extensions_text(std::initializer_list<InputFormat::Holds> holds) {
   return text;
 }
 
+std::string formats_text() {
+  return "Meshes:        " + extensions_text({InputFormat::Holds::kMesh}) +
+         "\nPoint caches:  " + extensions_text({InputFormat::Holds::kPoints}) +
+         "\nAnimations:    " + extensions_text({InputFormat::Holds::kAnimation}) + "\n";
+}
+
 std::string sibling_of(const std::string& path, InputFormat::Holds holds) {
   for (const InputFormat* const format : input_formats()) {
     if (format->holds != holds) continue;

@@ -46,6 +46,8 @@ const InputFormat* format_of_extension(const std::string& path);
 
 // Returns ".obj, .off or .ply": the extensions of formats of these kinds.
 std::string extensions_text(std::initializer_list<InputFormat::Holds> holds);
+// Returns the extensions of all formats, a line for each kind, for help pages.
+std::string formats_text();
 
 // Returns an existing file next to `path` that differs only in its extension, one of a format
 // of this kind; empty: none.

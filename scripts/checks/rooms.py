@@ -5,6 +5,7 @@ them), and single files; other libraries only where LIBRARIES says so.
 """
 
 import pathlib
+import re
 
 # Kinds of GOF: a folder of each side has these names.
 _KINDS = sorted(path.name for path in (
@@ -41,6 +42,12 @@ _SKINNED_ROOMS = _QUANTISE | {_SKINNED + "/quantise", _SKINNED + "/search", _SKI
 # Readers and writers of mesh files know these, and nothing of coding.
 _MESH_FILES = {"common", "common/memory", "common/codec/bits/fixed_point.h", "common/codec/mesh",
                "common/files", "common/json"}
+_READERS = "encoder/meshes"
+# Formats of mesh files: the folders that define one.
+_FORMATS = {
+    f"{_READERS}/{path.parent.name}"
+    for path in (pathlib.Path(__file__).parents[2] / _READERS).glob("*/*.cpp")
+    if re.search(r"^const InputFormat \w+\{", path.read_text(encoding="utf-8"), re.MULTILINE)}
 
 ROOMS = {
     "common": set(),
@@ -189,9 +196,7 @@ ROOMS = {
     "encoder/meshes/polygons": {"common/codec/mesh", "common/files"},
     # Families of formats.
     "encoder/meshes/materials": _MESH_FILES | {"encoder/meshes"},
-    "encoder/meshes/obj": _MESH_FILES | {"encoder/meshes"},
-    "encoder/meshes/off": _MESH_FILES | {"encoder/meshes"},
-    "encoder/meshes/ply": _MESH_FILES | {"encoder/meshes"},
+    **dict.fromkeys(_FORMATS, _MESH_FILES | {"encoder/meshes"}),
     "encoder/meshes/rlpd": _MESH_FILES | {"encoder/codec/math/det_math.h", "encoder/meshes"},
     "encoder/meshes/point_cache": _MESH_FILES | {"encoder/meshes", "encoder/meshes/materials"},
     "encoder/meshes/sequence": _MESH_FILES | {"encoder/meshes", "encoder/meshes/materials",
@@ -201,15 +206,11 @@ ROOMS = {
                                           "encoder/codec/math/det_math.h", "encoder/meshes",
                                           "encoder/meshes/gltf/document"},
     # All of them, by name or contents.
-    "encoder/meshes/open": _MESH_FILES | {
+    "encoder/meshes/open": _MESH_FILES | _FORMATS | {
         "common/codec/attributes/attribute_set.h", "common/codec/syntax/stream_format.h",
-        "encoder/meshes", "encoder/meshes/gltf", "encoder/meshes/names", "encoder/meshes/obj",
-        "encoder/meshes/off", "encoder/meshes/ply", "encoder/meshes/point_cache",
-        "encoder/meshes/rlpd", "encoder/meshes/sequence"},
-    "encoder/meshes/fuzz": {"common/testing", "encoder/meshes", "encoder/meshes/gltf",
-                            "encoder/meshes/gltf/document", "encoder/meshes/obj",
-                            "encoder/meshes/off", "encoder/meshes/ply",
-                            "encoder/meshes/point_cache", "encoder/meshes/rlpd"},
+        "encoder/meshes", "encoder/meshes/names", "encoder/meshes/sequence"},
+    "encoder/meshes/fuzz": _FORMATS | {"common/testing", "encoder/meshes",
+                                       "encoder/meshes/gltf/document"},
     "encoder/programs/rlpcenc": {
         "common/cli", "common/codec/syntax", "common/files", "common/json", "encoder",
         "encoder/codec/kind_choices.h", "encoder/codec/kinds/inter", "encoder/codec/metrics",

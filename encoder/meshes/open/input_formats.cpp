@@ -11,9 +11,8 @@
 namespace rlpc {
 
 std::span<const InputFormat* const> input_formats() {
-  static constexpr std::array<const InputFormat*, 7> kFormats{
-      &kGltfFormat, &kRlpdFormat, &kPc2Format, &kMddFormat,
-      &kPlyFormat,  &kOffFormat,  &kObjFormat};
+  static constexpr std::array kFormats{&kGltfFormat, &kRlpdFormat, &kPc2Format, &kMddFormat,
+                                       &kPlyFormat,  &kOffFormat,  &kObjFormat};
   return kFormats;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/testing/scratch_folder.h"
+#include "encoder/meshes/input_format.h"
 
 namespace rlpc {
 namespace {
@@ -327,7 +328,8 @@ TEST_F(MeshSequenceTest, RefusesPatternsWithoutFiles) {
   expect_error({path("f%d_%d.obj"), "", {}}, "expected one %d, %04d");
   expect_error({path("none/f%d.obj"), "", {}}, "cannot list the folder");
   expect_error({path("f*.obj"), "", {}}, "no file matches");
-  expect_error({folder_.string(), "", {}}, "no .obj, .off or .ply file in this folder");
+  const std::string meshes = extensions_text({InputFormat::Holds::kMesh});
+  expect_error({folder_.string(), "", {}}, "no " + meshes + " file in this folder");
   expect_error({path("none"), "", {}}, "no such file or folder");
   expect_error({put("a.stl", "solid"), "", {}}, "unknown kind of file");
 }

@@ -12,6 +12,7 @@
 #include "common/cli/command_line.h"
 #include "common/codec/syntax/sequence_header.h"
 #include "encoder/codec/sequence/target/quality.h"
+#include "encoder/meshes/input_format.h"
 #include "encoder/programs/rlpcenc/method_options.h"
 
 namespace rlpc {
@@ -23,7 +24,7 @@ constexpr const char* kExamples = R"(Examples
   rlpcenc 'walk_*.obj' --fps 25 -o walk.rlpc --bpvf 1.5
   rlpcenc fox.glb --animation Run -o run.rlpc)";
 
-constexpr const char* kDetails = R"(More examples
+constexpr const char* kInputs = R"(More examples
   rlpcenc frames/ --kg 0.3 --dry-run                     how large would it be?
   rlpcenc cow.obj --points cow.pc2 -o c.rlpc --max-error 0.01
   rlpcenc cow.obj --points cow.pc2 -o c.rlpc --profile high --lossless 14
@@ -33,19 +34,22 @@ constexpr const char* kDetails = R"(More examples
       --frame lcf                         the settings of the RLPCA paper
 
 INPUT is one of
-  mesh.obj --points cache.pc2   triangles from the mesh (OBJ, PLY, OFF), frames
-                                from the point cache (PC2, MDD)
-  folder/                       every .obj in it (or .ply, .off)
+  mesh.obj --points cache.pc2   triangles from the mesh, frames from the point
+                                cache
+  folder/                       all meshes in it, of one format
   walk_%04d.obj, walk_####.obj, 'walk_*.obj'
                                 the matching files; walk_%g.obj: also walk_1.25,
                                 walk_-7 and walk_007
   a_1.obj a_2.obj ...           these files
-  mesh.obj                      a single frame (also .ply, .off)
+  mesh.obj                      a single frame
   walk.glb, walk.gltf           a glTF 2.0 scene: skins, morph targets, animated
                                 nodes
   clip.rlpd                     decoded positions
   -                             any single file, from standard input
+)";
 
+// After the list of formats.
+constexpr const char* kDetails = R"(
 Files are ordered by the one number in which their names differ: -5 before -4,
 1.25 between 1 and 2, 9 before 10. Digits after a point are a fraction
 (t=0.041667) or a counter (v003.0995), whichever gives equal steps. Names that
@@ -162,7 +166,8 @@ void add_input_options(CLI::App& app, EncodeCommandLine& line) {
          "Mesh, meshes, folder or pattern of meshes, or glTF file; - for standard input")
       ->required();
   app.add_option("--points", line.options.input.points,
-                 "Point cache (.pc2, .mdd) with the frames of INPUT")
+                 "Point cache (" + extensions_text({InputFormat::Holds::kPoints}) +
+                     ") with the frames of INPUT")
       ->option_text("FILE")
       ->group(kInput);
   app.add_option(
@@ -328,7 +333,7 @@ void add_encode_options(CLI::App& app, EncodeCommandLine& line) {
            {"INPUT [--points CACHE] -o OUT.rlpc [OPTIONS]",
             {kInput, kQuality, kOutput},
             kExamples,
-            kDetails},
+            kInputs + formats_text() + kDetails},
            RLPC_VERSION);
 }
 

@@ -145,6 +145,11 @@ class Inputs(unittest.TestCase):
         return [(i.name, i.path.relative_to(self.folder).as_posix(), i.points and i.points.name)
                 for i in inputs.find([self.folder / name for name in names])]
 
+    def test_formats_are_those_of_the_readers(self):
+        self.assertLessEqual({".obj", ".ply", ".off"}, set(inputs.MESHES))
+        self.assertLessEqual({".pc2", ".mdd"}, set(inputs.CACHES))
+        self.assertLessEqual({*inputs.GLTF, ".rlpd"}, set(inputs.WHOLE))
+
     def test_meshes_with_their_caches(self):
         self.make("a.obj", "a.pc2", "b.ply", "b.mdd", "alone.obj", "x.glb", "y.pc2")
         pairs = [("a", "a.obj", "a.pc2"), ("b", "b.ply", "b.mdd")]

@@ -8,10 +8,26 @@ import subprocess
 
 import measure
 
-MESHES = (".obj", ".ply", ".off")
-CACHES = (".pc2", ".mdd")
+READERS = pathlib.Path(__file__).resolve().parents[3] / "encoder" / "meshes"
+_FORMAT = re.compile(r"^const InputFormat k\w+\{\s*\.holds = InputFormat::Holds::k(\w+),\s*"
+                     r"\.extensions = (\w+),", re.MULTILINE)
+
+
+def extensions(holds):
+    """Extensions of the formats of rlpcenc that hold this, as its readers define them."""
+    found = []
+    for path in sorted(READERS.glob("*/*.cpp")):
+        text = path.read_text(encoding="utf-8")
+        for array in [m[2] for m in _FORMAT.finditer(text) if m[1] == holds]:
+            values = re.search(rf"\b{array}\{{([^}}]*)\}}", text)[1]
+            found += re.findall(r'"(\.\w+)"', values)
+    return tuple(found)
+
+
+MESHES = extensions("Mesh")
+CACHES = extensions("Points")
+WHOLE = extensions("Animation")  # the animation is one file
 GLTF = (".glb", ".gltf")
-WHOLE = (*GLTF, ".rlpd")  # the animation is one file
 _WILD = re.compile(r"[%*?\[]")
 
 
@@ -57,7 +73,8 @@ def _of_file(path, rest):
     points = (pathlib.Path(rest.pop(0)) if rest and pathlib.Path(rest[0]).suffix.lower() in CACHES
               else _cache_of(path))
     if points is None:
-        raise measure.Failure(f"{path}: is one frame; name its point cache (.pc2, .mdd) after it")
+        raise measure.Failure(f"{path}: is one frame; name its point cache "
+                              f"({', '.join(CACHES)}) after it")
     if not points.is_file():
         raise measure.Failure(f"{points}: no such file")
     return Input(path.stem, path, points)
