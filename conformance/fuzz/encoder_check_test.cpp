@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/codec/syntax/sequence_header.h"
+
 namespace rlpc {
 namespace {
 
@@ -147,7 +149,7 @@ TEST(EncoderCheck, KnowsWhatIsLegal) {
       [](auto& c) { c.box_max[2] = 0x1p101F; },
       [](auto& c) { c.options.target_value = 0.0; },
       [](auto& c) { c.options.components = 1025; },
-      [](auto& c) { c.options.least_level = 5; },
+      [](auto& c) { c.options.least_level = kMaxLevelIdc + 1; },
       [](auto& c) { c.options.profile = 3; },
       [](auto& c) { c.options.preset = 3; },
       [](auto& c) { c.options.target = 0; },

@@ -14,6 +14,7 @@ import expectation
 import recipe as recipes
 import recipe_source
 import spec_program  # found through recipe_source
+import specdec
 import suite
 
 LICENCE = "CC0-1.0"
@@ -104,10 +105,11 @@ def sidecar_of(recipe, data, folder, program):
         found["attributes"] = attributes
     expect = _expect(recipe, found, place)
     found.pop("expect")
-    level = recipe.meta.get("level", _header_value(recipe, "level_idc"))
+    level = int(recipe.meta.get("level", _header_value(recipe, "level_idc")))
+    highest = specdec.levels_of(program)[-1]
     return {"id": recipe.path.stem, "title": recipe.meta["title"], "spec": specification_of(folder),
             "profile": _profile(recipe),
-            "level": max(1, min(4, int(level))), "expect": expect, "tier": recipe.meta["tier"],
+            "level": max(1, min(highest, level)), "expect": expect, "tier": recipe.meta["tier"],
             "rules": recipe.meta["rules"], "features": recipe.meta["features"],
             "twin": recipe.meta.get("twin"), "sha256": hashlib.sha256(data).hexdigest(),
             "recipe": recipe.path.relative_to(folder).as_posix(),

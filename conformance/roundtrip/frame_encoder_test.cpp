@@ -370,7 +370,8 @@ TEST(FrameEncoder, RefusesFormatsThatCannotBe) {
   expect(error_of_format([](auto& f) { f.num_frames = 0; }), "only the High profile");
   expect(error_of_format([](auto& f) { f.num_frames = kMaxFrames + 1; }), "not 16777217");
   expect(error_of_format([](auto& f) { f.frame_rate.denominator = 0; }), "frame rate");
-  expect(error_of_format([](auto& f) { f.least_level = 5; }), "1 to 4, not 5");
+  const std::string levels = std::to_string(kMaxLevelIdc);
+  expect(error_of_format([](auto& f) { f.least_level = kMaxLevelIdc + 1; }), "1 to " + levels);
   expect(error_of_format([](auto& f) { f.box_min[1] = f.box_max[1] + 1; }), "extent in y");
   expect(error_of_format([&](auto& f) { f.box_max[2] = nan; }), "extent in z");
   expect(error_of_format([](auto& f) { f.box_max[0] = 1e37F; }), "extent in x");

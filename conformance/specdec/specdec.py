@@ -20,6 +20,7 @@ rlpc-verdict {"rule": ..., "bit": ..., "frame": ...}.
 """
 
 import argparse
+import functools
 import json
 import pathlib
 import re
@@ -140,18 +141,24 @@ def program_of(folder, cache=None):
     return program_cache.CachedProgram(folder, cache)
 
 
-def describe(folder, cache=None):
-    """The answer to --rlpc-conformance, all of it from the specification."""
-    variables = program_of(folder, cache).compile(
+@functools.cache
+def levels_of(program):
+    """The levels of Table B-1."""
+    variables = program.compile(
         {"StreamBytes": b"", "require": None, "supported": None, "inflates_to": None,
          "output_bytes": None, "output_attributes": None})
+    return list(range(1, len(variables["Levels"]) + 1))
+
+
+def describe(folder, cache=None):
+    """The answer to --rlpc-conformance, all of it from the specification."""
     text = "\n".join(p.read_text(encoding="utf-8") for p in sorted(folder.glob("*.md")))
     version = re.search(r"\bspecifies RLPC version (\d+\.\d+)", text).group(1)
     profiles = re.findall(r"^\|\s*\d+\s*\|\s*(\w+)\s*\|\s*(\d+\.\d+)\s*\|", text, re.MULTILINE)
     return {"contract": 1, "name": "specdec", "version": version,
             "spec": [since for _, since in profiles],  # each minor version adds one
             "profiles": [name.lower() for name, _ in profiles],
-            "levels": list(range(1, len(variables["Levels"]) + 1)), "outputs": ["rlpd", "rlpa"]}
+            "levels": levels_of(program_of(folder, cache)), "outputs": ["rlpd", "rlpa"]}
 
 
 def print_element(position, name, value):
