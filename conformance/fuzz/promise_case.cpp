@@ -217,7 +217,7 @@ void CaseMaker::make_high() {
     s.low_delay = true;
     if (chance(2)) s.inter.pattern.emplace().kind = FramePattern::kFirst;
   } else if (!exact && chance(2)) {
-    s.kind = kKindChoices[below(kNumKindChoices)];
+    s.gof_kind = kKindChoices[below(kNumKindChoices)];
   }
   if (s.usable_kind() == GofKind::kInter) {
     if (chance(2)) s.inter.patches = below(9);

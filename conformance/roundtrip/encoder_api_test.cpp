@@ -70,7 +70,7 @@ TEST(Settings, KindsOfGofThatAProfileLacksAreRefused) {
   const auto error_with = [](Profile profile, GofKind kind) {
     return error_of([&](EncoderSettings& s) {
       s.profile = profile;
-      s.kind = kind;
+      s.gof_kind = kind;
     });
   };
   EXPECT_NE(

@@ -198,7 +198,7 @@ TEST(FrameEncoder, WithoutANumberOfFrames) {
        {std::optional<GofKind>(), std::optional(GofKind::kCluster),
         std::optional(GofKind::kInter)}) {
     EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 20);
-    settings.kind = kind;
+    settings.gof_kind = kind;
     const auto encoded = encode_open_ended(source, settings);
     EXPECT_TRUE(encoded.report.target_met);
     EXPECT_EQ(encoded.report.num_gofs, 3U);

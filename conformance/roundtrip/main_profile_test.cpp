@@ -152,7 +152,7 @@ TEST(MainProfile, RaisesTheLevelForManyTrajectories) {
   MemoryFrames source(std::move(shape), std::move(frames));
   EncoderSettings settings = settings_for({Target::kKg, 1.0});
   settings.gof_frames = EncoderSettings::kWholeSequence;
-  settings.kind = GofKind::kSkinned;  // clusters cost less
+  settings.gof_kind = GofKind::kSkinned;  // clusters cost less
   const Encoded e = encoded(source, settings);
   EXPECT_GT(e.report.components, kLevels[0].max_components);
   EXPECT_EQ(e.report.header.level_idc, 2U);

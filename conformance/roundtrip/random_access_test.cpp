@@ -55,7 +55,7 @@ StreamBytes stream_of_frames(const std::optional<FramePattern>& pattern, InterWe
   MemoryFrames source = tube_with_normals(6, 26);
   EncoderSettings settings;
   settings.profile = Profile::kHigh;
-  settings.kind = GofKind::kInter;
+  settings.gof_kind = GofKind::kInter;
   settings.target = {Target::kKg, 0.5};
   settings.gof_frames = 8;
   settings.attributes.normals = NormalChoice::kExact;

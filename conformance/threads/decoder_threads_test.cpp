@@ -203,7 +203,7 @@ TEST(ThreadsOfACut, LeaveAttributesWhole) {
   EncoderSettings settings;
   settings.target = {Target::kKg, 0.5};
   settings.gof_frames = 4;
-  settings.kind = GofKind::kSkinned;  // can be cut
+  settings.gof_kind = GofKind::kSkinned;  // can be cut
   settings.attributes.normals = NormalChoice::kExact;
   const StreamBytes stream = encode_to_memory(source, settings);
   auto whole = Decoder::open(memory_source(StreamBytes(stream)), with_threads(1));

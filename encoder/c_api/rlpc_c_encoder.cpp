@@ -125,7 +125,7 @@ std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
       return std::nullopt;
   }
   if (options.gof_kind > kNumKindChoices || options.low_delay > 1) return std::nullopt;
-  if (options.gof_kind > 0) settings.kind = kKindChoices[options.gof_kind - 1];
+  if (options.gof_kind > 0) settings.gof_kind = kKindChoices[options.gof_kind - 1];
   settings.low_delay = options.low_delay != 0;
   settings.target.value = options.target_value;
   settings.gof_frames = options.gof_frames;

@@ -157,7 +157,7 @@ struct EncoderSettings {
   MainTools main;          // must be left at its defaults if profile is kBaseline
   // Kind of all GOFs, one of kKindChoices (kind_choices.h); none: for each GOF, the cheapest
   // that profile and settings allow. With kInter, `main` must be left at its defaults.
-  std::optional<GofKind> kind;
+  std::optional<GofKind> gof_kind;
   // FrameEncoder only: codes and passes on each frame when it is added. High profile; all GOFs
   // are inter GOFs, with each frame predicted from the one before; the target is a KG error, a
   // maximum error or lossless, and is not searched for.
@@ -205,9 +205,9 @@ struct EncoderSettings {
   bool has_detail_layers() const {
     return main.component_groups > 1 || main.layer_groups > 1 || inter.layer_groups > 1;
   }
-  // Returns the only kind of GOF that low_delay, the target and `kind` allow; none: several.
+  // Returns the only kind of GOF that low_delay, the target and gof_kind allow; none: several.
   std::optional<GofKind> usable_kind() const {
-    return low_delay || target.kind == Target::kLossless ? GofKind::kInter : kind;
+    return low_delay || target.kind == Target::kLossless ? GofKind::kInter : gof_kind;
   }
   bool may_use(GofKind k) const { return usable_kind().value_or(k) == k; }
 };

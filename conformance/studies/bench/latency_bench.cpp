@@ -62,7 +62,7 @@ const Bytes& stream_of(const BenchAnimation& animation, Profile profile) {
   settings.preset = Preset::kFast;
   settings.target = {Target::kKg, 0.1};
   settings.gof_frames = kGofFrames;
-  if (profile == Profile::kHigh) settings.kind = GofKind::kInter;
+  if (profile == Profile::kHigh) settings.gof_kind = GofKind::kInter;
   at->second = encode(animation, settings);
   return at->second;
 }

@@ -93,7 +93,7 @@ std::optional<InputError> check_low_delay(const EncoderSettings& s) {
         "low delay needs --profile high (version 1.2, in preparation): use that, or leave out "
         "--low-delay"};
   }
-  if (s.kind.value_or(GofKind::kInter) != GofKind::kInter) {
+  if (s.gof_kind.value_or(GofKind::kInter) != GofKind::kInter) {
     return InputError{"low delay needs inter GOFs: leave out --gof-kind"};
   }
   if (s.target.kind == Target::kBpvf) {
@@ -125,11 +125,11 @@ std::optional<InputError> check_pattern(const EncoderSettings& s) {
 }
 
 std::optional<InputError> check_choice_of_kind(const EncoderSettings& s) {
-  if (!s.kind) return std::nullopt;
-  if (!can_be_chosen(*s.kind)) {
+  if (!s.gof_kind) return std::nullopt;
+  if (!can_be_chosen(*s.gof_kind)) {
     return InputError{"shared rigs cannot be chosen: use --gof-kind skinned"};
   }
-  const KindProperties& kind = properties_of(*s.kind);
+  const KindProperties& kind = properties_of(*s.gof_kind);
   if (kind.profile_idc <= static_cast<std::uint32_t>(s.profile)) return std::nullopt;
   return InputError{std::string(kind.name) + " GOFs need --profile " +
                     profiles_with(kind.profile_idc) + ": use that, or leave out --gof-kind"};
@@ -143,7 +143,7 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
           "lossless coding needs --profile high (version 1.2, in preparation): use that, or "
           "leave out --lossless"};
     }
-    if (s.kind.value_or(GofKind::kInter) != GofKind::kInter) {
+    if (s.gof_kind.value_or(GofKind::kInter) != GofKind::kInter) {
       return InputError{
           "only inter GOFs are lossless: use --gof-kind inter, or leave out --gof-kind or "
           "--lossless"};

@@ -28,7 +28,7 @@ std::vector<EncoderSettings> searches_of_profile(const EncoderSettings& settings
 
 // Whether all tools are left to the encoder, so that those of another profile may be used.
 bool is_free(const EncoderSettings& settings) {
-  return settings.target.has_search() && !settings.kind && settings.components == 0 &&
+  return settings.target.has_search() && !settings.gof_kind && settings.components == 0 &&
          settings.main == MainTools{} && settings.inter == InterTools{};
 }
 

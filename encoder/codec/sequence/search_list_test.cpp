@@ -38,7 +38,7 @@ TEST(ListSearches, HasOneWhereToolsAreAskedFor) {
     settings.main.bones = 3;
     EXPECT_EQ(profiles_of(settings), Profiles{profile});
     settings = settings_of(profile);
-    settings.kind = GofKind::kSkinned;
+    settings.gof_kind = GofKind::kSkinned;
     EXPECT_EQ(profiles_of(settings), Profiles{profile});
     settings = settings_of(profile);
     settings.components = 9;

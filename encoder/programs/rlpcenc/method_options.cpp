@@ -68,7 +68,7 @@ void add_profile_options(CLI::App& app, EncodeCommandLine& line) {
   std::map<std::string, std::optional<GofKind>> kinds{{"auto", std::nullopt}};
   for (const GofKind kind : kKindChoices) kinds[kind_name(kind)] = kind;
   add_choice<std::optional<GofKind>>(
-      app, "--gof-kind", line.options.settings.kind, kinds,
+      app, "--gof-kind", line.options.settings.gof_kind, kinds,
       "Kind of GOFs: auto (default: the cheapest for each)" + names_of_kinds())
       ->group(method);
   app.add_option("--components", line.options.settings.components,

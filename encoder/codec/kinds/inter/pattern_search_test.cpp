@@ -23,7 +23,7 @@ class PatternSearch : public testing::Test {
  protected:
   PatternSearch() {
     settings_.profile = Profile::kHigh;
-    settings_.kind = GofKind::kInter;
+    settings_.gof_kind = GofKind::kInter;
     settings_.inter.patches = 0;
     header_.profile_idc = kProfileHigh;
     header_.num_vertices = kRings * kSides;

@@ -19,7 +19,7 @@ TEST(GofKinds, EachChoiceHasAnEncoderInItsProfiles) {
       header.profile_idc = static_cast<std::uint32_t>(profile);
       EncoderSettings settings;
       settings.profile = profile;
-      settings.kind = kind;
+      settings.gof_kind = kind;
       const SequenceMesh mesh{header, topology, triangles};
       const bool is_in_profile = properties_of(kind).profile_idc <= header.profile_idc;
       EXPECT_EQ(make_gof_kinds(mesh, settings).size(), is_in_profile ? 1U : 0U)
