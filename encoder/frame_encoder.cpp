@@ -26,7 +26,7 @@ std::optional<InputError> check(const FrameFormat& format, const EncoderSettings
   if (settings.target.kind == Target::kLossless && settings.target.value == 0.0) {
     return InputError{
         "the grid of frames that are yet to come is not known: lossless coding needs a number "
-        "of bits (--lossless BITS)"};
+        "of bits ('target = lossless, target_value = BITS')"};
   }
   return std::nullopt;
 }

@@ -91,7 +91,7 @@ OutputError output_error(const std::string& path, const std::string& what, int c
 }
 
 OutputError OutputLimit::exceeded(const std::string& path) const {
-  return OutputError{path + ": has more than the " + size_text(max_bytes) + " of --max-output",
+  return OutputError{path + ": has more than the " + size_text(max_bytes) + " of 'max_bytes'",
                      false, true};
 }
 

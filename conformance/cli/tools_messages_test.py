@@ -43,6 +43,26 @@ class Messages(ToolsTest):
         result = run("rlpcval", stream, "--max-memory", "50KiB")
         self.assertIn(b"of memory, more than the limit", result.out)
 
+    def test_settings_of_libraries_are_named_as_options(self):
+        self.clip(2)
+        encode = ["rlpcenc", self.path("clip.obj"), "--points", self.path("clip.pc2"), "-o",
+                  self.path("a.rlpc")]
+        for options, words in (
+                (["--clusters", 2], "--clusters needs --profile baseline: use that, or leave out "
+                                    "--clusters"),
+                (["--profile", "baseline", "--bones", 2], "--bones needs --profile main"),
+                (["--profile", "baseline", "--no-rdo"], "--no-rdo needs a number of components "
+                                                        "per cluster (--components)"),
+                (["--low-delay", "--profile", "high", "--bpvf", 1],
+                 "use --quality, --kg, --max-error or --lossless BITS instead of --bpvf"),
+                (["--temporal-layers", 2, "--frame-pattern", "previous", "--profile", "high",
+                  "--gof-kind", "inter"], "(--temporal-layers)")):
+            error = run(*encode, *options).err
+            self.assertIn(words, error)
+            self.assertNotIn("'", error)
+        self.assertIn("(--max-memory). A smaller --gof needs less",
+                      run(*encode, "--max-memory", "1MB").err)
+
     def test_one_frame_is_no_plural(self):
         self.clip(2)
         self.path("one.obj").write_bytes(self.path("clip.obj").read_bytes())

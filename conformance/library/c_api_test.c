@@ -588,7 +588,7 @@ static void test_low_delay(void) {
   rlpc_encoder* encoder;
   memset(&stream, 0, sizeof stream);
   CHECK(rlpc_encoder_create(&format, &options, append, &stream, &encoder) == RLPC_BAD_INPUT);
-  CHECK_TEXT(rlpc_encoder_error_text(encoder), "needs --profile high");
+  CHECK_TEXT(rlpc_encoder_error_text(encoder), "needs 'profile = high'");
   rlpc_encoder_close(encoder);
   options.profile = RLPC_PROFILE_HIGH;
   options.gof_kind = RLPC_GOF_KIND_INTER;

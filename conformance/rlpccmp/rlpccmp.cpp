@@ -30,6 +30,7 @@
 #include "encoder/meshes/input_format.h"
 #include "encoder/meshes/open/open_source.h"
 #include "encoder/programs/rlpcenc/report_json.h"
+#include "encoder/programs/setting_options.h"
 
 namespace {
 
@@ -197,7 +198,7 @@ void add_options(CLI::App& app, Options& o) {
 }
 
 int complain(const std::string& message) {
-  rlpc::print_message("rlpccmp", message);
+  rlpc::print_message("rlpccmp", rlpc::with_encoder_options(message));
   return kFailed;
 }
 

@@ -56,9 +56,9 @@ TEST(Settings, ThatContradictEachOtherAreRefused) {
     s.baseline.rdo = rdo;
     s.baseline.rate_in_vectors = rdo;
   };
-  EXPECT_NE(error_of([&](auto& s) { shared(s, false); }).find("--no-rdo needs"),
+  EXPECT_NE(error_of([&](auto& s) { shared(s, false); }).find("'rdo = false' needs"),
             std::string::npos);
-  EXPECT_NE(error_of([&](auto& s) { shared(s, true); }).find("--rdo-rate needs"),
+  EXPECT_NE(error_of([&](auto& s) { shared(s, true); }).find("'rate_in_vectors' needs"),
             std::string::npos);
   EXPECT_NE(error_of([&](auto& s) { paper(s), s.baseline.qu = 21; }).find("20 bits"),
             std::string::npos);
@@ -74,41 +74,41 @@ TEST(Settings, KindsOfGofThatAProfileLacksAreRefused) {
     });
   };
   EXPECT_NE(
-      error_with(Profile::kBaseline, GofKind::kSkinned).find("need --profile main or high"),
+      error_with(Profile::kBaseline, GofKind::kSkinned).find("need 'profile = main' or high"),
       std::string::npos);
-  EXPECT_NE(error_with(Profile::kMain, GofKind::kInter).find("need --profile high"),
+  EXPECT_NE(error_with(Profile::kMain, GofKind::kInter).find("need 'profile = high'"),
             std::string::npos);
   EXPECT_NE(error_with(Profile::kHigh, GofKind::kSharedRig).find("cannot be chosen"),
             std::string::npos);
   EXPECT_EQ(error_with(Profile::kMain, GofKind::kCluster), "");
 }
 
-// One parameter of a profile, and its name in the error message.
+// One parameter of a profile, and its name in the error message, in quotes.
 struct Parameter {
-  const char* option;
+  const char* setting;
   std::function<void(EncoderSettings&)> give;
 };
 
 void expect_only_of(Profile profile, const char* name, const std::vector<Parameter>& list) {
   const Profile other = profile == Profile::kMain ? Profile::kBaseline : Profile::kMain;
   for (const Parameter& p : list) {
-    EXPECT_EQ(error_of([&](auto& s) { s.profile = profile, p.give(s); }), "") << p.option;
+    EXPECT_EQ(error_of([&](auto& s) { s.profile = profile, p.give(s); }), "") << p.setting;
     EXPECT_EQ(error_of([&](auto& s) { s.profile = other, p.give(s); }),
-              std::string(p.option) + " needs --profile " + name + ": use that, or leave out " +
-                  p.option);
+              std::string(p.setting) + " needs 'profile = " + name +
+                  "': use that, or leave out " + p.setting);
   }
 }
 
 TEST(Settings, OfTheHighProfileAreRefusedInTheMainProfile) {
   for (const Parameter& p : std::vector<Parameter>{
-           {"--adaptive-factors", [](auto& s) { s.main.adaptive_factors = 4; }},
-           {"--rest", [](auto& s) { s.main.rest = RestTools::kOrder; }},
-           {"--track-levels", [](auto& s) { s.main.track_levels = 2; }},
-           {"--temporal-layers", [](auto& s) { s.main.temporal_layers = 2; }}}) {
+           {"'adaptive_factors'", [](auto& s) { s.main.adaptive_factors = 4; }},
+           {"'rest'", [](auto& s) { s.main.rest = RestTools::kOrder; }},
+           {"'track_levels'", [](auto& s) { s.main.track_levels = 2; }},
+           {"'temporal_layers'", [](auto& s) { s.main.temporal_layers = 2; }}}) {
     EXPECT_EQ(error_of([&](auto& s) { s.profile = Profile::kHigh, p.give(s); }), "");
-    EXPECT_EQ(
-        error_of([&](auto& s) { s.profile = Profile::kMain, p.give(s); }),
-        std::string(p.option) + " needs --profile high: use that, or leave out " + p.option);
+    EXPECT_EQ(error_of([&](auto& s) { s.profile = Profile::kMain, p.give(s); }),
+              std::string(p.setting) + " needs 'profile = high': use that, or leave out " +
+                  p.setting);
   }
 }
 
@@ -125,7 +125,7 @@ TEST(Settings, TemporalLayersNeedLevels) {
   EXPECT_EQ(error(0, 1), "");
   EXPECT_NE(error({}, 9).find("1 to 8 temporal layers"), std::string::npos);
   EXPECT_NE(error(2, 4).find("1 to 3 temporal layers"), std::string::npos);
-  EXPECT_NE(error({}, 0).find("(--temporal-layers)"), std::string::npos);
+  EXPECT_NE(error({}, 0).find("('temporal_layers')"), std::string::npos);
 }
 
 TEST(Settings, OfTheBaselineProfileAreRefusedInTheMainProfile) {
@@ -135,17 +135,18 @@ TEST(Settings, OfTheBaselineProfileAreRefusedInTheMainProfile) {
   };
   expect_only_of(
       Profile::kBaseline, "baseline",
-      {{"--clusters", [](auto& s) { s.baseline.clusters = 2; }},
-       {"--no-rdo", [&](auto& s) { given(s), s.baseline.rdo = false; }},
-       {"--rdo-rate", [&](auto& s) { given(s), s.baseline.rate_in_vectors = true; }},
-       {"--qu", [&](auto& s) { given(s), s.baseline.qu = s.baseline.qc = 10; }},
-       {"--qdelta", [](auto& s) { s.baseline.qdelta = 10; }},
-       {"--frame", [](auto& s) { s.baseline.frame_mode = FrameMode::kLcf; }},
-       {"--seeds", [](auto& s) { s.baseline.seed_mode = SeedMode::kSpread; }},
-       {"--partition", [](auto& s) { s.baseline.partition = PartitionMethod::kKway; }},
-       {"--motion", [](auto& s) { s.baseline.motion = MotionMeasure::kPlain; }}});
-  EXPECT_NE(error_of([](auto& s) { s.baseline.qc = 10; }).find("--qc needs --profile baseline"),
-            std::string::npos);
+      {{"'clusters'", [](auto& s) { s.baseline.clusters = 2; }},
+       {"'rdo = false'", [&](auto& s) { given(s), s.baseline.rdo = false; }},
+       {"'rate_in_vectors'", [&](auto& s) { given(s), s.baseline.rate_in_vectors = true; }},
+       {"'qu'", [&](auto& s) { given(s), s.baseline.qu = s.baseline.qc = 10; }},
+       {"'qdelta'", [](auto& s) { s.baseline.qdelta = 10; }},
+       {"'frame_mode'", [](auto& s) { s.baseline.frame_mode = FrameMode::kLcf; }},
+       {"'seed_mode'", [](auto& s) { s.baseline.seed_mode = SeedMode::kSpread; }},
+       {"'partition'", [](auto& s) { s.baseline.partition = PartitionMethod::kKway; }},
+       {"'motion'", [](auto& s) { s.baseline.motion = MotionMeasure::kPlain; }}});
+  EXPECT_NE(
+      error_of([](auto& s) { s.baseline.qc = 10; }).find("'qc' needs 'profile = baseline'"),
+      std::string::npos);
 }
 
 TEST(Settings, OfSeedsAreRefusedWithOtherPartitions) {
@@ -158,39 +159,40 @@ TEST(Settings, OfSeedsAreRefusedWithOtherPartitions) {
     });
   };
   EXPECT_EQ(error(SeedMode::kTriangle, MotionMeasure::kAuto), "");
-  EXPECT_NE(error(SeedMode::kFirst, MotionMeasure::kAuto).find("--seeds first needs"),
+  EXPECT_NE(error(SeedMode::kFirst, MotionMeasure::kAuto).find("'seed_mode = first' needs"),
             std::string::npos);
-  EXPECT_NE(error(SeedMode::kAuto, MotionMeasure::kSquared).find("--motion needs"),
+  EXPECT_NE(error(SeedMode::kAuto, MotionMeasure::kSquared).find("'motion' needs"),
             std::string::npos);
 }
 
 TEST(Settings, OfTheMainProfileAreRefusedInTheBaselineProfile) {
-  expect_only_of(Profile::kMain, "main",
-                 {{"--bones", [](auto& s) { s.main.bones = 2; }},
-                  {"--prediction", [](auto& s) { s.main.prediction = Prediction::kNone; }},
-                  {"--influences", [](auto& s) { s.main.influences = 2; }},
-                  {"--no-geometry-weights", [](auto& s) { s.main.geometry_weights = false; }},
-                  {"--no-outer-ring", [](auto& s) { s.main.outer_ring = false; }},
-                  {"--no-layer-steps", [](auto& s) { s.main.layer_steps = false; }},
-                  {"--no-temporal-weights", [](auto& s) { s.main.temporal_weights = false; }},
-                  {"--basis-steps", [](auto& s) { s.main.cobra_steps = true; }},
-                  {"--no-clusters", [](auto& s) { s.main.clusters = false; }},
-                  {"--component-groups", [](auto& s) { s.main.component_groups = 2; }},
-                  {"--layer-groups", [](auto& s) { s.main.layer_groups = 2; }}});
+  expect_only_of(
+      Profile::kMain, "main",
+      {{"'bones'", [](auto& s) { s.main.bones = 2; }},
+       {"'prediction'", [](auto& s) { s.main.prediction = Prediction::kNone; }},
+       {"'influences'", [](auto& s) { s.main.influences = 2; }},
+       {"'geometry_weights = false'", [](auto& s) { s.main.geometry_weights = false; }},
+       {"'outer_ring = false'", [](auto& s) { s.main.outer_ring = false; }},
+       {"'layer_steps = false'", [](auto& s) { s.main.layer_steps = false; }},
+       {"'temporal_weights = false'", [](auto& s) { s.main.temporal_weights = false; }},
+       {"'cobra_steps'", [](auto& s) { s.main.cobra_steps = true; }},
+       {"'clusters = false'", [](auto& s) { s.main.clusters = false; }},
+       {"'component_groups'", [](auto& s) { s.main.component_groups = 2; }},
+       {"'layer_groups'", [](auto& s) { s.main.layer_groups = 2; }}});
 }
 
 TEST(Settings, OfLayersAreRefusedWithoutThem) {
   const std::vector<Parameter> list{
-      {"--no-geometry-weights", [](auto& s) { s.main.geometry_weights = false; }},
-      {"--no-outer-ring", [](auto& s) { s.main.outer_ring = false; }},
-      {"--no-layer-steps", [](auto& s) { s.main.layer_steps = false; }},
-      {"--layer-groups", [](auto& s) { s.main.layer_groups = 2; }}};
+      {"'geometry_weights = false'", [](auto& s) { s.main.geometry_weights = false; }},
+      {"'outer_ring = false'", [](auto& s) { s.main.outer_ring = false; }},
+      {"'layer_steps = false'", [](auto& s) { s.main.layer_steps = false; }},
+      {"'layer_groups'", [](auto& s) { s.main.layer_groups = 2; }}};
   for (const Parameter& p : list) {
     EXPECT_EQ(error_of([&](auto& s) { s.main.prediction = Prediction::kLayers, p.give(s); }),
               "");
     EXPECT_EQ(
         error_of([&](auto& s) { s.main.prediction = Prediction::kNone, p.give(s); }),
-        std::string(p.option) + " needs layers: leave it out, or use --prediction layers");
+        std::string(p.setting) + " needs layers: leave it out, or use 'prediction = layers'");
   }
   EXPECT_EQ(error_of([](auto& s) {
               s.main.prediction = Prediction::kNone;
@@ -213,7 +215,7 @@ TEST(Settings, TheLevelIsThatOfTheStream) {
 
 TEST(Settings, AVertexFollowsAtMostFourBones) {
   EXPECT_EQ(error_of([](auto& s) { s.main.influences = 4; }), "");
-  EXPECT_NE(error_of([](auto& s) { s.main.influences = 5; }).find("4 bones (--influences)"),
+  EXPECT_NE(error_of([](auto& s) { s.main.influences = 5; }).find("4 bones ('influences')"),
             std::string::npos);
 }
 
@@ -232,14 +234,14 @@ TEST(Settings, ATargetIsAboveZero) {
 
 TEST(Settings, NoLevelHasMoreClustersBonesOrComponents) {
   EXPECT_EQ(error_of([](auto& s) { s.main.bones = 1025; }),
-            "no level allows more than 1024 bones (--bones)");
+            "no level allows more than 1024 bones ('bones')");
   EXPECT_EQ(error_of([](auto& s) {
               s.profile = Profile::kBaseline;
               s.baseline.clusters = 1025;
             }),
-            "no level allows more than 1024 clusters (--clusters)");
+            "no level allows more than 1024 clusters ('clusters')");
   EXPECT_EQ(error_of([](auto& s) { s.components = 1025; }),
-            "no level allows more than 1024 components (--components)");
+            "no level allows more than 1024 components ('components')");
 }
 
 // Targets larger than anything in the animation, and so large that sums overflow.
@@ -270,7 +272,7 @@ TEST(Encoder, RefusesWhatNoLevelAllows) {
   MemoryFrames source({}, std::move(frames));
   EncoderSettings settings;
   settings.gof_frames = EncoderSettings::kWholeSequence;
-  EXPECT_NE(error_of(source, settings).find("smaller --gof"), std::string::npos);
+  EXPECT_NE(error_of(source, settings).find("smaller 'gof_frames'"), std::string::npos);
 }
 
 TEST(Encoder, RefusesWhatMayNeedMoreMemoryThanThereIs) {
@@ -283,7 +285,7 @@ TEST(Encoder, RefusesWhatMayNeedMoreMemoryThanThereIs) {
   const auto report = encode(large, settings, discard);
   ASSERT_FALSE(report);
   EXPECT_TRUE(report.error().is_limit);
-  EXPECT_NE(report.error().message.find("the limit is 20 MiB (--max-memory)"),
+  EXPECT_NE(report.error().message.find("the limit is 20 MiB ('max_memory_bytes')"),
             std::string::npos);
 }
 

@@ -34,7 +34,7 @@ std::span<std::uint8_t> as_bytes(std::span<char> text) {
 
 std::string memory_problem(std::uint64_t max_memory_bytes) {
   return "needs more memory than the limit of " + size_text(max_memory_bytes) +
-         " (--max-memory)";
+         " ('max_memory_bytes')";
 }
 
 InputResult<InputFile> InputFile::open(const std::string& path,

@@ -26,7 +26,7 @@ struct InputFormat {
   // Whether a file of this format may begin with these bytes, at most 64; null: the contents do
   // not show the format.
   bool (*begins)(std::string_view beginning) = nullptr;
-  bool has_clips = false;  // --animation and welding apply
+  bool has_clips = false;  // InputOptions::animations and weld apply
 
   InputResult<std::unique_ptr<FrameSource>> (*open)(const InputOptions& options) = nullptr;
   // name: for error messages.

@@ -141,7 +141,7 @@ TEST_F(LossesTest, NamesTheMemoryLimitThatIsSet) {
   InputOptions options{
       put("m.obj", "mtllib m.mtl\nusemtl a\n" + kTriangle + "usemtl b\nf 1 2 3\n"), "", {}};
   options.max_memory_bytes = 100000000;
-  expect_named(options, {"the limit of 100 MB (--max-memory)"});
+  expect_named(options, {"the limit of 100 MB ('max_memory_bytes')"});
 }
 
 TEST_F(LossesTest, NamesWhatPlyFilesHaveAndStreamsHaveNot) {
@@ -174,11 +174,12 @@ TEST_F(LossesTest, NamesTheTimesOfPointCaches) {
     return InputOptions{mesh, put(name, bytes), {}};
   };
   EXPECT_EQ(notes_of(points("a.pc2", pc2(0, 1))), "");
-  expect_named(points("b.pc2", pc2(-10, 0.5F)), {"start -10, sample rate 0.5", "--fps"});
+  expect_named(points("b.pc2", pc2(-10, 0.5F)), {"start -10, sample rate 0.5", "'frame_rate'"});
   EXPECT_EQ(notes_of(points("a.mdd", mdd({0, 0.04F, 0.08F}))), "");
-  expect_named(points("b.mdd", mdd({0, 0.04F, 0.2F})), {"uneven frame times", "--fps"});
+  expect_named(points("b.mdd", mdd({0, 0.04F, 0.2F})), {"uneven frame times", "'frame_rate'"});
   expect_named(points("c.mdd", mdd({1, 1.04F, 1.08F})), {"start 1 of the frame times"});
-  expect_named(points("d.mdd", mdd({0, 1, 2})), {"interval 1 of the frame times", "--fps"});
+  expect_named(points("d.mdd", mdd({0, 1, 2})),
+               {"interval 1 of the frame times", "'frame_rate'"});
   const float infinity = std::numeric_limits<float>::infinity();
   const std::vector<std::pair<std::vector<float>, const char*>> losses{
       {{0, 0.04F, 0.2F}, "uneven frame times"},
@@ -190,7 +191,7 @@ TEST_F(LossesTest, NamesTheTimesOfPointCaches) {
       {{2, 2, 2}, "which are all 2"}};
   for (const auto& [times, text] : losses) {
     InputOptions options = points("e.mdd", mdd(times));
-    expect_named(options, {text, "--fps"});
+    expect_named(options, {text, "'frame_rate'"});
     options.frame_rate = FrameRate{25, 1};
     expect_named(options, {text});
   }

@@ -159,7 +159,7 @@ InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> sour
     shape.notes.push_back("merged " + std::to_string(merged) + " duplicate " +
                           (merged == 1 ? "vertex" : "vertices") + " (" +
                           std::to_string(vertices.size()) +
-                          " left); --no-weld keeps them apart");
+                          " left); 'weld = false' keeps them apart");
   }
   drop_degenerate(shape);
   return std::unique_ptr<FrameSource>(

@@ -65,10 +65,10 @@ TEST(Weld, MergesOnlyVerticesThatCoincideInEveryFrame) {
   EXPECT_EQ(source->triangles(), (std::vector<Triangle>{{0, 1, 2}, {0, 3, 2}}));
   EXPECT_EQ(x_of(*source, 0), (std::vector<float>{1, 2, 1, 2}));
   EXPECT_EQ(x_of(*source, 2), (std::vector<float>{1, 2, 4, 5}));
-  EXPECT_EQ(source->notes(),
-            (std::vector<std::string>{"a note",
-                                      "merged 2 duplicate vertices (4 left); --no-weld keeps "
-                                      "them apart"}));
+  EXPECT_EQ(source->notes(), (std::vector<std::string>{
+                                 "a note",
+                                 "merged 2 duplicate vertices (4 left); 'weld = false' keeps "
+                                 "them apart"}));
 }
 
 TEST(Weld, ReportsTheDegenerateTrianglesItDrops) {

@@ -142,7 +142,8 @@ ROOMS = {
     # The page that rlpcdec puts streams in.
     "decoder/web/player": _PUBLIC_DECODER | {"common/files", "common/json", "decoder/codec/units",
                                              "decoder/meshes"},
-    "decoder/programs": _PUBLIC_DECODER | {"common", "common/files", "decoder/codec/units"},
+    "decoder/programs": _PUBLIC_DECODER | {"common", "common/cli", "common/files",
+                                           "decoder/codec/units"},
     "decoder/programs/rlpcdec": _PUBLIC_DECODER | {
         "common", "common/cli", "common/codec/mesh", "common/codec/syntax", "common/files",
         "common/json", "decoder/meshes", "decoder/programs", "decoder/web/player"},
@@ -211,11 +212,12 @@ ROOMS = {
         "encoder/meshes", "encoder/meshes/names", "encoder/meshes/sequence"},
     "encoder/meshes/fuzz": _FORMATS | {"common/testing", "encoder/meshes",
                                        "encoder/meshes/gltf/document"},
+    "encoder/programs": {"common/cli"},
     "encoder/programs/rlpcenc": {
         "common/cli", "common/codec/syntax", "common/files", "common/json", "encoder",
         "encoder/codec/kind_choices.h", "encoder/codec/kinds/inter", "encoder/codec/metrics",
         "encoder/codec/sequence", "encoder/codec/sequence/target", "encoder/meshes",
-        "encoder/meshes/open"},
+        "encoder/meshes/open", "encoder/programs"},
     "encoder/testing": _ENCODER | _QUANTISE | _MESH_FILES | {
         "common/testing", "encoder/codec/kinds/skinned", "encoder/codec/partition",
         "encoder/meshes", "encoder/meshes/gltf", "encoder/meshes/open"},

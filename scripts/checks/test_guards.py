@@ -20,6 +20,7 @@ import check_headers_first
 import check_json
 import check_layers
 import check_rules
+import check_settings
 import cpp_source
 import rooms
 
@@ -362,6 +363,46 @@ class Constants(RealTree):
                 missing.enter_context(self.without(f"encoder/codec/{folder}"))
             found = check_constants.check(self.root)[0]
         self.assertIn("no tuned constant is found: the check sees nothing", found)
+
+
+class Settings(RealTree):
+    ENCODER = "encoder/codec/sequence/check_settings.cpp"
+    TABLE = "encoder/programs/setting_options.h"
+
+    def test_the_tree_is_clean(self):
+        self.assertEqual(check_settings.check(self.root)[0], [])
+
+    def test_libraries_name_no_options(self):
+        for name in (self.ENCODER, "decoder/meshes/gltf/gltf_sink.cpp",
+                     "common/files/output_file.cpp", "decoder/c_api/rlpc_pose.cpp"):
+            with self.subTest(name=name):
+                self.complaint(check_settings.check, name,
+                               lambda text: text + 'const char* s = "use a smaller "\n"--gof";\n',
+                               name, "names the option --gof")
+
+    def test_settings_of_messages_have_options(self):
+        self.complaint(check_settings.check, self.ENCODER,
+                       lambda text: text + 'const char* s = "a \'new_setting = 3\'";\n',
+                       self.ENCODER, "'new_setting = 3' has no option in " + self.TABLE)
+        with self.planted(self.TABLE,
+                          lambda text: text.replace('    {"gof_frames", "--gof"},\n', "")):
+            found = check_settings.check(self.root)[0]
+        self.assertTrue(found)
+        for complaint in found:
+            self.assertIn("'gof_frames' has no option", complaint)
+
+    def test_entries_are_settings_and_options(self):
+        for entry, words in (('{"gof_frame", "--gof"}', "no setting is called gof_frame"),
+                             ('{"rest", "--rests"}', "no program has the option --rests")):
+            with self.subTest(entry=entry):
+                self.complaint(check_settings.check, self.TABLE,
+                               lambda text, entry=entry: text + "// " + entry + "\n",
+                               self.TABLE, words)
+
+    def test_a_tree_without_messages_or_tables_is_reported(self):
+        with self.without("encoder/programs"):
+            self.assertTrue(any("has no entries" in complaint
+                                for complaint in check_settings.check(self.root)[0]))
 
 
 class Specification(RealTree):

@@ -22,6 +22,7 @@
 #include "conformance/studies/peers/peer_codecs.h"
 #include "encoder/meshes/frame_source.h"
 #include "encoder/meshes/open/open_source.h"
+#include "encoder/programs/setting_options.h"
 
 namespace rlpc::peers {
 namespace {
@@ -314,6 +315,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) try {
   return rlpc::peers::run(argc, argv);
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "peer_codec: %s\n", error.what());
+  const std::string message = rlpc::with_encoder_options(error.what());
+  std::fprintf(stderr, "peer_codec: %s\n", message.c_str());
   return 2;
 }

@@ -19,7 +19,7 @@ GlbDocument::GlbDocument(FrameRate frame_rate) {
 OutputError too_large_for_glb(const std::string& path) {
   return OutputError{path +
                      ": more than 4 GB, which a .glb file cannot hold; write fewer frames "
-                     "(--frames), or a point cache"};
+                     "('num_frames'), or a point cache"};
 }
 
 std::optional<OutputError> failure_of(const GlbDocument& document, const std::string& path,

@@ -78,7 +78,8 @@ void GltfSink::warn_of_targets(std::size_t num_targets, const char* remedy) {
 std::optional<OutputError> GltfSink::finish_morph(GlbDocument& document, GltfMorph& morph) {
   assert(written_ == options_.num_frames);
   if (!morph.finish(spans_, options_.frame_rate)) return too_large_for_glb(file_.path());
-  warn_of_targets(morph.num_targets(), "fewer frames (--frames, --clip), or bones (--as skin)");
+  warn_of_targets(morph.num_targets(),
+                  "fewer frames ('num_frames'), or bones ('motion = skin')");
   return write(document);
 }
 
@@ -97,10 +98,10 @@ OutputResult<std::unique_ptr<FrameSink>> open_gltf_sink(const std::string& path,
   if (options.motion != GltfMotion::kMorph && bytes > options.max_skin_bytes) {
     why = "bones need " + to_string(bytes >> 20) +
           " MiB of memory, for all frames at once, more than is allowed; write fewer frames "
-          "(--frames, --clip), or allow more (--max-memory)";
+          "('num_frames'), or allow more ('max_skin_bytes')";
   }
   if (options.motion == GltfMotion::kSkin && !why.empty()) {
-    return OutputError{path + ": --as skin: " + why, false, true};
+    return OutputError{path + ": 'motion = skin': " + why, false, true};
   }
   if (options.motion == GltfMotion::kMorph || !why.empty()) {
     return std::unique_ptr<FrameSink>(

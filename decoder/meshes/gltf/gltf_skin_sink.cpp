@@ -46,10 +46,11 @@ class Poses {
 
   // Returns why the frames have no skeleton; empty if they have one.
   std::string why_none() const {
-    if (is_full_) return "the bones need more memory than is allowed (--max-memory)";
+    if (is_full_) return "the bones need more memory than is allowed ('max_skin_bytes')";
     if (!uses_.empty()) return "";
-    return "the stream has no bones, only frames predicted from frames; write --as morph, or "
-           "encode with rlpcenc --profile main";
+    return "the stream has no bones, only frames predicted from frames; write 'motion = "
+           "morph', "
+           "or encode with the Main profile";
   }
 
   // Moves the skeleton of most frames and its places to `source`.
@@ -103,7 +104,7 @@ class GltfSkinSink final : public GltfSink {
   std::optional<OutputError> finish() override {
     const bool is_required = options().motion == GltfMotion::kSkin;
     if (const std::string why = poses_.why_none(); !why.empty()) {
-      if (is_required) return OutputError{name() + ": --as skin: " + why, true};
+      if (is_required) return OutputError{name() + ": 'motion = skin': " + why, true};
       return finish_as_morph();
     }
     const Threads threads(options().threads);
@@ -124,7 +125,8 @@ class GltfSkinSink final : public GltfSink {
     remark(means + "; differs from the stream by " + text_of(skin.error));
     if (!is_required && !is_near) {
       remark(
-          "this is more than the stream is likely to differ from its source; --as morph is "
+          "this is more than the stream is likely to differ from its source; 'motion = morph' "
+          "is "
           "exact, but takes " +
           to_string(num_moving_) + " morph targets, about " +
           to_string((morph_bytes_ + 999'999) / 1'000'000) + " MB");
@@ -132,11 +134,11 @@ class GltfSkinSink final : public GltfSink {
     if (skin.lacks_normals) {
       remark(
           "normals move with the bones alone: those of all frames need more memory than is "
-          "allowed (--max-memory)");
+          "allowed ('max_skin_bytes')");
     }
-    warn_of_targets(skin.num_targets, "fewer (--max-targets)");
+    warn_of_targets(skin.num_targets, "fewer ('max_targets')");
     if (skin.num_joints > kMostJointsShown) {
-      remark("more than the 256 bones that some viewers can hold; write --as morph");
+      remark("more than the 256 bones that some viewers can hold; write 'motion = morph'");
     }
     return write(document);
   }

@@ -23,6 +23,7 @@
 #include "decoder/meshes/frame_sink.h"
 #include "decoder/meshes/rlpa_file.h"
 #include "decoder/programs/exit_code.h"
+#include "decoder/programs/setting_options.h"
 #include "decoder/rlpc_decoder.h"
 
 namespace rlpc {
@@ -158,7 +159,7 @@ int decode(const Request& request) {
   const Outcome outcome =
       wants_attributes ? decode_attributes(request) : decode_frames(request);
   if (outcome.output_error) {
-    print_message("rlpcdec", outcome.output_error->message);
+    print_message("rlpcdec", with_decoder_options(outcome.output_error->message));
     return kExitIo;
   }
   if (!outcome.error) return kExitDone;

@@ -10,13 +10,14 @@
 #include "decoder/describe_error.h"
 #include "decoder/programs/borrowed_source.h"
 #include "decoder/programs/exit_code.h"
+#include "decoder/programs/setting_options.h"
 #include "decoder/web/player/player_page.h"
 
 namespace rlpc {
 namespace {
 
 int complain(const std::string& message, int code) {
-  print_message("rlpcdec", message);
+  print_message("rlpcdec", with_decoder_options(message));
   return code;
 }
 

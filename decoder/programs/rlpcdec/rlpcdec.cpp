@@ -30,6 +30,7 @@
 #include "decoder/programs/rlpcdec/conformance_verbs.h"
 #include "decoder/programs/rlpcdec/decode_command_line.h"
 #include "decoder/programs/rlpcdec/html_verb.h"
+#include "decoder/programs/setting_options.h"
 #include "decoder/programs/stream_message.h"
 #include "decoder/rlpc_decoder.h"
 
@@ -38,7 +39,7 @@ namespace {
 using Options = rlpc::DecodeCommand;
 
 int complain(const std::string& message, int code) {
-  rlpc::print_message("rlpcdec", message);
+  rlpc::print_message("rlpcdec", rlpc::with_decoder_options(message));
   return code;
 }
 
@@ -106,7 +107,8 @@ std::string coarse_text(const Options& o, const rlpc::Decoder& decoder) {
 // Reports what was decoded. sink: null if nothing was written.
 void report(const Options& o, const rlpc::Decoder& decoder, const FrameCounts& frames,
             const rlpc::FrameSink* sink) {
-  const auto remarks = sink != nullptr ? sink->remarks() : std::vector<std::string>();
+  auto remarks = sink != nullptr ? sink->remarks() : std::vector<std::string>();
+  for (std::string& remark : remarks) remark = rlpc::with_decoder_options(remark);
   const std::uint32_t num_vertices = decoder.num_vertices();
   const auto num_triangles = static_cast<std::uint32_t>(decoder.triangles().size());
   if (o.json) {

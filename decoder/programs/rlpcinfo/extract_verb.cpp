@@ -13,6 +13,7 @@
 #include "common/json/json.h"
 #include "decoder/codec/extract/sub_stream_extractor.h"
 #include "decoder/programs/exit_code.h"
+#include "decoder/programs/setting_options.h"
 #include "decoder/programs/stream_message.h"
 
 namespace rlpc {
@@ -27,7 +28,7 @@ std::optional<std::uint32_t> parse_count(std::string_view text) {
 }
 
 int complain(const std::string& message, int code) {
-  print_message("rlpcinfo", message);
+  print_message("rlpcinfo", with_decoder_options(message));
   return code;
 }
 

@@ -24,6 +24,7 @@
 #include "decoder/programs/rlpcinfo/extract_verb.h"
 #include "decoder/programs/rlpcinfo/rlpcinfo_pictures.h"
 #include "decoder/programs/rlpcinfo/rlpcinfo_report.h"
+#include "decoder/programs/setting_options.h"
 #include "decoder/programs/stream_message.h"
 #include "decoder/report/bit_counter.h"
 #include "decoder/report/vertex_groups.h"
@@ -73,7 +74,7 @@ struct Options {
 };
 
 int complain(const std::string& message, int code) {
-  rlpc::print_message("rlpcinfo", message);
+  rlpc::print_message("rlpcinfo", rlpc::with_decoder_options(message));
   return code;
 }
 

@@ -68,7 +68,7 @@ OutputResult<std::string> read_player(const std::string& path) {
     return OutputError{place.string() + ": not the page that scripts/player builds"};
   }
   if (!path.empty()) return OutputError{path + ": cannot read the player"};
-  return OutputError{"player not built: run scripts/player first, or pass --player PAGE"};
+  return OutputError{"player not built: run scripts/player first, or pass 'player'"};
 }
 
 std::optional<OutputError> write_player_page(const std::string& path, const std::string& player,

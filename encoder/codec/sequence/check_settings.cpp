@@ -15,8 +15,8 @@ namespace rlpc {
 namespace {
 
 struct Parameter {
-  const char* option;  // name in rlpcenc
-  bool given;          // differs from the default
+  const char* setting;  // name in quotes, as messages have it
+  bool given;           // differs from the default
 };
 
 // The structured binding names all members: a new member does not compile until it is added
@@ -25,16 +25,16 @@ std::vector<Parameter> parameters(const BaselineTools& tools) {
   const auto& [clusters, rdo, rate_in_vectors, qu, qc, qdelta, frame_mode, seed_mode, partition,
                motion] = tools;
   const BaselineTools defaults;
-  return {{"--clusters", clusters != defaults.clusters},
-          {"--no-rdo", rdo != defaults.rdo},
-          {"--rdo-rate", rate_in_vectors != defaults.rate_in_vectors},
-          {"--qu", qu != defaults.qu},
-          {"--qc", qc != defaults.qc},
-          {"--qdelta", qdelta != defaults.qdelta},
-          {"--frame", frame_mode != defaults.frame_mode},
-          {"--seeds", seed_mode != defaults.seed_mode},
-          {"--partition", partition != defaults.partition},
-          {"--motion", motion != defaults.motion}};
+  return {{"'clusters'", clusters != defaults.clusters},
+          {"'rdo = false'", rdo != defaults.rdo},
+          {"'rate_in_vectors'", rate_in_vectors != defaults.rate_in_vectors},
+          {"'qu'", qu != defaults.qu},
+          {"'qc'", qc != defaults.qc},
+          {"'qdelta'", qdelta != defaults.qdelta},
+          {"'frame_mode'", frame_mode != defaults.frame_mode},
+          {"'seed_mode'", seed_mode != defaults.seed_mode},
+          {"'partition'", partition != defaults.partition},
+          {"'motion'", motion != defaults.motion}};
 }
 
 std::vector<Parameter> parameters(const MainTools& tools) {
@@ -42,26 +42,26 @@ std::vector<Parameter> parameters(const MainTools& tools) {
                temporal_weights, adaptive_factors, rest, track_levels, temporal_layers,
                cobra_steps, clusters, component_groups, layer_groups] = tools;
   const MainTools defaults;
-  return {{"--bones", bones != defaults.bones},
-          {"--prediction", prediction != defaults.prediction},
-          {"--influences", influences != defaults.influences},
-          {"--no-geometry-weights", geometry_weights != defaults.geometry_weights},
-          {"--no-outer-ring", outer_ring != defaults.outer_ring},
-          {"--no-layer-steps", layer_steps != defaults.layer_steps},
-          {"--no-temporal-weights", temporal_weights != defaults.temporal_weights},
-          {"--basis-steps", cobra_steps != defaults.cobra_steps},
-          {"--no-clusters", clusters != defaults.clusters},
-          {"--component-groups", component_groups != defaults.component_groups},
-          {"--layer-groups", layer_groups != defaults.layer_groups}};
+  return {{"'bones'", bones != defaults.bones},
+          {"'prediction'", prediction != defaults.prediction},
+          {"'influences'", influences != defaults.influences},
+          {"'geometry_weights = false'", geometry_weights != defaults.geometry_weights},
+          {"'outer_ring = false'", outer_ring != defaults.outer_ring},
+          {"'layer_steps = false'", layer_steps != defaults.layer_steps},
+          {"'temporal_weights = false'", temporal_weights != defaults.temporal_weights},
+          {"'cobra_steps'", cobra_steps != defaults.cobra_steps},
+          {"'clusters = false'", clusters != defaults.clusters},
+          {"'component_groups'", component_groups != defaults.component_groups},
+          {"'layer_groups'", layer_groups != defaults.layer_groups}};
 }
 
 // Returns the parameters that the Main profile does not have.
 std::vector<Parameter> parameters_of_high(const MainTools& tools) {
   const MainTools defaults;
-  return {{"--adaptive-factors", tools.adaptive_factors != defaults.adaptive_factors},
-          {"--rest", tools.rest != defaults.rest},
-          {"--track-levels", tools.track_levels != defaults.track_levels},
-          {"--temporal-layers", tools.temporal_layers != defaults.temporal_layers}};
+  return {{"'adaptive_factors'", tools.adaptive_factors != defaults.adaptive_factors},
+          {"'rest'", tools.rest != defaults.rest},
+          {"'track_levels'", tools.track_levels != defaults.track_levels},
+          {"'temporal_layers'", tools.temporal_layers != defaults.temporal_layers}};
 }
 
 // Rejects parameters of the other profile, which would have no effect.
@@ -69,8 +69,8 @@ std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
                                        const std::string& profile) {
   for (const Parameter& p : parameters) {
     if (p.given) {
-      return InputError{std::string(p.option) + " needs --profile " + profile +
-                        ": use that, or leave out " + p.option};
+      return InputError{std::string(p.setting) + " needs " + profile +
+                        ": use that, or leave out " + p.setting};
     }
   }
   return std::nullopt;
@@ -79,7 +79,7 @@ std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
 // Returns the words for a profile and those above it: "main or high".
 std::string profiles_with(std::uint32_t profile_idc) {
   constexpr std::array<const char*, 3> kWords{"baseline", "main", "high"};
-  std::string words = kWords[profile_idc];
+  std::string words = std::string("'profile = ") + kWords[profile_idc] + "'";
   for (std::uint32_t p = profile_idc + 1; p < kWords.size(); ++p) {
     words += std::string(" or ") + kWords[p];
   }
@@ -90,21 +90,22 @@ std::optional<InputError> check_low_delay(const EncoderSettings& s) {
   if (!s.low_delay) return std::nullopt;
   if (s.profile != Profile::kHigh) {
     return InputError{
-        "low delay needs --profile high (version 1.2, in preparation): use that, or leave out "
-        "--low-delay"};
+        "low delay needs 'profile = high' (version 1.2, in preparation): use that, or leave "
+        "out 'low_delay'"};
   }
   if (s.gof_kind.value_or(GofKind::kInter) != GofKind::kInter) {
-    return InputError{"low delay needs inter GOFs: leave out --gof-kind"};
+    return InputError{"low delay needs inter GOFs: leave out 'gof_kind'"};
   }
   if (s.target.kind == Target::kBpvf) {
     return InputError{
-        "without a delay, a rate cannot be searched for: use --quality, --kg, --max-error or "
-        "--lossless BITS instead of --bpvf"};
+        "without a delay, a rate cannot be searched for: use 'target = kg', "
+        "'target = max_error' or 'target = lossless, target_value = BITS' instead of "
+        "'target = bpvf'"};
   }
   const FramePattern::Kind pattern = s.inter.pattern.value_or(FramePattern{}).kind;
   if (pattern != FramePattern::kPrevious && pattern != FramePattern::kFirst) {
     return InputError{
-        "low delay needs frames that are coded in their order: use --frame-pattern previous or "
+        "low delay needs frames that are coded in their order: use 'pattern = previous' or "
         "first"};
   }
   return std::nullopt;
@@ -115,8 +116,8 @@ std::optional<InputError> check_pattern(const EncoderSettings& s) {
   if (!s.inter.pattern && !s.low_delay) {
     constexpr std::uint32_t kMost = kMaxPatternPeriodLog2 + 1;  // fixed: format
     if (layers >= 1 && layers <= kMost) return std::nullopt;
-    return InputError{"without --frame-pattern, there are 1 to " + std::to_string(kMost) +
-                      " temporal layers (--temporal-layers)"};
+    return InputError{"without 'pattern', there are 1 to " + std::to_string(kMost) +
+                      " temporal layers ('temporal_layers')"};
   }
   FramePattern pattern = s.inter.pattern.value_or(FramePattern{});
   pattern.temporal_layers = layers;
@@ -127,12 +128,12 @@ std::optional<InputError> check_pattern(const EncoderSettings& s) {
 std::optional<InputError> check_choice_of_kind(const EncoderSettings& s) {
   if (!s.gof_kind) return std::nullopt;
   if (!can_be_chosen(*s.gof_kind)) {
-    return InputError{"shared rigs cannot be chosen: use --gof-kind skinned"};
+    return InputError{"shared rigs cannot be chosen: use 'gof_kind = skinned'"};
   }
   const KindProperties& kind = properties_of(*s.gof_kind);
   if (kind.profile_idc <= static_cast<std::uint32_t>(s.profile)) return std::nullopt;
-  return InputError{std::string(kind.name) + " GOFs need --profile " +
-                    profiles_with(kind.profile_idc) + ": use that, or leave out --gof-kind"};
+  return InputError{std::string(kind.name) + " GOFs need " + profiles_with(kind.profile_idc) +
+                    ": use that, or leave out 'gof_kind'"};
 }
 
 std::optional<InputError> check_kinds(const EncoderSettings& s) {
@@ -140,36 +141,35 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
   if (s.target.kind == Target::kLossless) {
     if (s.profile != Profile::kHigh) {
       return InputError{
-          "lossless coding needs --profile high (version 1.2, in preparation): use that, or "
-          "leave out --lossless"};
+          "lossless coding needs 'profile = high' (version 1.2, in preparation): use that, or "
+          "leave out 'target = lossless'"};
     }
     if (s.gof_kind.value_or(GofKind::kInter) != GofKind::kInter) {
       return InputError{
-          "only inter GOFs are lossless: use --gof-kind inter, or leave out --gof-kind or "
-          "--lossless"};
+          "only inter GOFs are lossless: use 'gof_kind = inter', or leave out 'gof_kind' or "
+          "'target = lossless'"};
     }
   }
   if (auto error = check_low_delay(s)) return error;
   const std::optional<GofKind> kind = s.usable_kind();
   if (kind == GofKind::kInter && s.components > 0) {
-    return InputError{"--components has no effect on inter GOFs: leave it out"};
+    return InputError{"'components' has no effect on inter GOFs: leave it out"};
   }
   if (!s.may_use(GofKind::kSkinned) && s.main != MainTools{}) {
     return InputError{
         "the settings of bones and trajectories have no effect on GOFs without "
-        "bones: leave them out, or use --gof-kind auto or skinned"};
+        "bones: leave them out, or use 'gof_kind = auto' or skinned"};
   }
   if (auto error = check_pattern(s)) return error;
   if (!kind && (s.inter.temporal_layers > 1 || s.inter.layer_groups > 1)) {
     return InputError{
-        "layers of inter GOFs need GOFs of this kind alone: use --gof-kind inter"};
+        "layers of inter GOFs need GOFs of this kind alone: use 'gof_kind = inter'"};
   }
   if (s.inter.layer_groups < 1) return InputError{"there is at least one layer group"};
   if (s.inter != InterTools{} && !(s.may_use(GofKind::kInter) && s.profile == Profile::kHigh)) {
     return InputError{
-        "--frame-pattern, --frame-weights, --patches and, except for Baseline, --partition "
-        "need "
-        "--profile high and --gof-kind inter: use these, or leave them out"};
+        "'pattern', 'weights', 'patches' and, except for Baseline, 'partition' need "
+        "'profile = high' and 'gof_kind = inter': use these, or leave them out"};
   }
   return std::nullopt;
 }
@@ -180,13 +180,14 @@ std::optional<InputError> check_layers(const MainTools& tools) {
     return std::nullopt;
   const MainTools defaults;
   for (const Parameter& p :
-       {Parameter{"--no-geometry-weights", tools.geometry_weights != defaults.geometry_weights},
-        Parameter{"--no-outer-ring", tools.outer_ring != defaults.outer_ring},
-        Parameter{"--no-layer-steps", tools.layer_steps != defaults.layer_steps},
-        Parameter{"--layer-groups", tools.layer_groups > 1}}) {
+       {Parameter{"'geometry_weights = false'",
+                  tools.geometry_weights != defaults.geometry_weights},
+        Parameter{"'outer_ring = false'", tools.outer_ring != defaults.outer_ring},
+        Parameter{"'layer_steps = false'", tools.layer_steps != defaults.layer_steps},
+        Parameter{"'layer_groups'", tools.layer_groups > 1}}) {
     if (p.given) {
-      return InputError{std::string(p.option) +
-                        " needs layers: leave it out, or use --prediction layers"};
+      return InputError{std::string(p.setting) +
+                        " needs layers: leave it out, or use 'prediction = layers'"};
     }
   }
   return std::nullopt;
@@ -202,17 +203,17 @@ std::optional<InputError> check_baseline(const EncoderSettings& s) {
         "a target determines the quantisers: leave out either the target or qu and qc"};
   }
   if (b.qu > 0 && s.components == 0) {
-    return InputError{"qu and qc need a number of components per cluster (--components)"};
+    return InputError{"qu and qc need a number of components per cluster ('components')"};
   }
   if ((!b.rdo || b.rate_in_vectors) && s.components == 0) {
-    return InputError{std::string(b.rdo ? "--rdo-rate" : "--no-rdo") +
-                      " needs a number of components per cluster (--components)"};
+    return InputError{std::string(b.rdo ? "'rate_in_vectors'" : "'rdo = false'") +
+                      " needs a number of components per cluster ('components')"};
   }
   const bool needs_seeds = b.motion != MotionMeasure::kAuto || b.seed_mode == SeedMode::kFirst;
   if (needs_seeds && b.partition != PartitionMethod::kSeeds) {
     return InputError{
-        std::string(b.motion != MotionMeasure::kAuto ? "--motion" : "--seeds first") +
-        " needs clusters of seeds: leave it out, or use --partition seeds"};
+        std::string(b.motion != MotionMeasure::kAuto ? "'motion'" : "'seed_mode = first'") +
+        " needs clusters of seeds: leave it out, or use 'partition = seeds'"};
   }
   if (b.qu < 0 || b.qc < 0 || b.qdelta < 0 || b.qu > 20 || b.qc > 20 || b.qdelta > 24) {
     return InputError{"quantisers have at most 20 bits (qu, qc) and 24 bits (qdelta)"};
@@ -227,11 +228,11 @@ std::optional<InputError> check_counts(const EncoderSettings& s) {
     return InputError{"no level allows more than " + std::to_string(limit) + " " + what};
   };
   if (s.components > most.max_components) {
-    return refuse(most.max_components, "components (--components)");
+    return refuse(most.max_components, "components ('components')");
   }
-  if (s.main.bones > most.max_clusters) return refuse(most.max_clusters, "bones (--bones)");
+  if (s.main.bones > most.max_clusters) return refuse(most.max_clusters, "bones ('bones')");
   if (s.baseline.clusters > most.max_clusters) {
-    return refuse(most.max_clusters, "clusters (--clusters)");
+    return refuse(most.max_clusters, "clusters ('clusters')");
   }
   return std::nullopt;
 }
@@ -251,12 +252,12 @@ std::optional<InputError> check_clips(std::span<const Clip> clips, std::uint32_t
     if (clip.name.empty() || clip.name.size() > kMaxClipNameBytes ||
         find_clip_name_error(clip.name) < clip.name.size()) {
       return InputError{"the name of a clip has 1 to " + std::to_string(kMaxClipNameBytes) +
-                        " bytes of UTF-8 without control characters (--clip)"};
+                        " bytes of UTF-8 without control characters ('clips')"};
     }
     if (clip.num_frames == 0) return InputError{"clip `" + clip.name + "` has no frames"};
     if (clip.first_frame >= num_frames || clip.num_frames > num_frames - clip.first_frame) {
       return InputError{"clip `" + clip.name + "` has frames beyond the last, " +
-                        std::to_string(num_frames - 1) + " (--clip)"};
+                        std::to_string(num_frames - 1) + " ('clips')"};
     }
   }
   return std::nullopt;
@@ -274,12 +275,12 @@ std::optional<InputError> check_attributes(const AttributeSettings& settings,
 
 std::optional<InputError> check_settings(const EncoderSettings& s) {
   const bool main = s.profile != Profile::kBaseline;
-  if (auto error = main ? check_unused(parameters(s.baseline), "baseline")
-                        : check_unused(parameters(s.main), "main")) {
+  if (auto error = main ? check_unused(parameters(s.baseline), "'profile = baseline'")
+                        : check_unused(parameters(s.main), "'profile = main'")) {
     return error;
   }
   if (s.profile != Profile::kHigh) {
-    if (auto error = check_unused(parameters_of_high(s.main), "high")) return error;
+    if (auto error = check_unused(parameters_of_high(s.main), "'profile = high'")) return error;
   }
   if (auto error = check_kinds(s)) return error;
   if (auto error = check_baseline(s)) return error;
@@ -287,18 +288,18 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
   if (auto error = check_counts(s)) return error;
   if (s.main.track_levels.value_or(0) > std::uint32_t{kMaxTrackLevels}) {
     return InputError{"hierarchical tracks have at most " + std::to_string(kMaxTrackLevels) +
-                      " levels besides level 0 (--track-levels)"};
+                      " levels besides level 0 ('track_levels')"};
   }
   const std::uint32_t most_layers = s.main.track_levels.value_or(kMaxTrackLevels) + 1;
   if (s.main.temporal_layers < 1 || s.main.temporal_layers > most_layers) {
     return InputError{"with " + std::to_string(most_layers - 1) +
                       " track levels, there are 1 to " + std::to_string(most_layers) +
-                      " temporal layers (--temporal-layers)"};
+                      " temporal layers ('temporal_layers')"};
   }
   // A vertex none of whose bones is a candidate has at most these (6.12.2).
   if (s.main.influences > kMaxExtraBones) {
     return InputError{"a vertex follows at most " + std::to_string(kMaxExtraBones) +
-                      " bones (--influences)"};
+                      " bones ('influences')"};
   }
   if (s.metadata.size() > kMaxMetadataBytes) {
     return InputError{"metadata may have at most 1 MiB"};
@@ -310,7 +311,7 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
   if (s.target.kind == Target::kLossless && s.target.value != 0.0 &&
       !is_position_bits(s.target.value)) {
     return InputError{"positions have 2 to " + std::to_string(kMaxPositionBits) +
-                      " bits (--lossless)"};
+                      " bits ('target = lossless')"};
   }
   return std::nullopt;
 }

@@ -11,8 +11,8 @@
 
 namespace rlpc {
 
-// Returns why the settings cannot be used, naming the option of rlpcenc for the setting at
-// fault; none if they are valid.
+// Returns why the settings cannot be used, naming the settings at fault in quotes, as members
+// of EncoderSettings and of rlpc_encode_options are called; none if they are valid.
 std::optional<InputError> check_settings(const EncoderSettings& settings);
 // Returns why the clips cannot be used. num_frames: kMaxFrames if not known.
 std::optional<InputError> check_clips(std::span<const Clip> clips, std::uint32_t num_frames);

@@ -128,7 +128,7 @@ InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
   }
   return InputError{"encoding may need " + std::to_string((need.with_one_thread >> 20) + 1) +
                         " MiB of memory; the limit is " + size_text(settings.max_memory_bytes) +
-                        " (--max-memory). A shorter --gof needs less",
+                        " ('max_memory_bytes'). A smaller 'gof_frames' needs less",
                     true};
 }
 

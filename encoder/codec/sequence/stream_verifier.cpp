@@ -78,7 +78,7 @@ StreamVerifier::StreamVerifier(const EncoderSettings& settings, const SequenceHe
 
 InputError StreamVerifier::fault(const std::string& what) const {
   return InputError{"the encoder has made a mistake, found by decoding what it wrote: " + what +
-                        ". Please report it; another --preset or --profile may avoid it",
+                        ". Please report it; another 'preset' or 'profile' may avoid it",
                     false, true};
 }
 

@@ -129,7 +129,7 @@ std::vector<std::uint32_t> animations_of(const GltfDocument& document, const std
   const auto count = static_cast<std::uint32_t>(document.animations.size());
   if (name == "all" && count == 0) {
     errors.add("animations",
-               "none there, though all are chosen; without --animation, the file "
+               "none there, though all are chosen; without 'animations', the file "
                "is a single frame");
     return {};
   }

@@ -137,7 +137,7 @@ std::string note_of(const FrameRate& rate, const std::string& why, const Keys& k
   const char* const of = keys.size() > 1 ? "animations lie" : "animation lie";
   std::string note = std::string("the keys of the ") + of +
                      " on no common frame rate: sampled at " + rate_text(rate) +
-                     " frames per second, " + why + "; --fps sets another rate";
+                     " frames per second, " + why + "; 'frame_rate' sets another rate";
   for (std::uint32_t n = kHighest + 1; n <= kMostAdvised; ++n) {
     if (!all_on(GltfFrameGrid{{n, 1}}, keys)) continue;
     return note + ", " + to_string(n) + " has frames at all keys";

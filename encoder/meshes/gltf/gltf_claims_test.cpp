@@ -183,7 +183,7 @@ TEST_F(GltfClaimsTest, HugeTimes) {
   };
   expect_text(error_of(last(3e38F)),
               "animations: found more frames of 3 vertices than the 16777216 that");
-  expect_text(error_of(last(600000)), "choose one animation, or a lower --fps");
+  expect_text(error_of(last(600000)), "choose one animation, or a lower 'frame_rate'");
   GltfLimits limits;
   limits.max_positions = 183;
   EXPECT_EQ(error_of(builder, {}, limits), "");

@@ -353,7 +353,7 @@ TEST_F(GltfSourceTest, WeldsByDefault) {
   EXPECT_EQ(joined->triangles(), (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}}));
   EXPECT_EQ(joined->notes(),
             (std::vector<std::string>{
-                "merged 5 duplicate vertices (4 left); --no-weld keeps them apart",
+                "merged 5 duplicate vertices (4 left); 'weld = false' keeps them apart",
                 "dropped 1 degenerate triangle"}));
 }
 

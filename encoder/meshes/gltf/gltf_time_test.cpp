@@ -146,7 +146,7 @@ TEST_F(GltfTimeTest, SparseKeysDoNotMultiplyFrames) {
       static_cast<double>(source->frame_rate().numerator) / source->frame_rate().denominator;
   EXPECT_NEAR((source->num_frames() - 1) / rate, 2.03, 1e-6);
   ASSERT_EQ(source->notes().size(), 1U);
-  expect_text(source->notes()[0], "--fps");
+  expect_text(source->notes()[0], "'frame_rate'");
 }
 
 TEST_F(GltfTimeTest, SeveralRatesTakeThatOfMostClipsAndSaySo) {
@@ -156,7 +156,7 @@ TEST_F(GltfTimeTest, SeveralRatesTakeThatOfMostClipsAndSaySo) {
   ASSERT_EQ(source->notes().size(), 1U);
   expect_text(source->notes()[0],
               "sampled at 24 frames per second, where those of 2 of 4 lie, and last poses "
-              "come up to 0.032 s late; --fps sets another rate");
+              "come up to 0.032 s late; 'frame_rate' sets another rate");
   const std::vector<Clip>& clips = source->clips();
   EXPECT_EQ(clips[1].num_frames, 20U);  // the 18th and a part
   EXPECT_EQ(clips[3].num_frames, 9U);   // half of the 8th
@@ -180,7 +180,8 @@ TEST_F(GltfTimeTest, EndsOfAllClipsAreFramesWhereTheirKeysAreNot) {
 TEST_F(GltfTimeTest, NamesARateThatHasAllKeys) {
   const auto source = open_times({frames_at(24, 12), frames_at(25, 20), frames_at(60, 31)});
   EXPECT_EQ(source->frame_rate(), (FrameRate{60, 1}));
-  expect_text(source->notes().at(0), "; --fps sets another rate, 600 has frames at all keys");
+  expect_text(source->notes().at(0),
+              "; 'frame_rate' sets another rate, 600 has frames at all keys");
 }
 
 TEST_F(GltfTimeTest, RateOfTheFileIsTriedFirst) {

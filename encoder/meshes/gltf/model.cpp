@@ -43,7 +43,7 @@ class ModelReader {
     if (animations.empty() && document_.animations.size() > 1) {
       model_.notes.push_back("reading the first of " + to_string(document_.animations.size()) +
                              " animations (" + gltf_animation_names(document_) +
-                             "); --animation chooses others");
+                             "); 'animations' chooses others");
     }
     for (const std::uint32_t number : chosen) {
       model_.clips.push_back(read_gltf_clip(document_, number, values_, errors_));

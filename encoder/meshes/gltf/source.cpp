@@ -34,7 +34,8 @@ InputResult<std::vector<std::uint32_t>> first_frames(const GltfModel& model,
       return InputError{path + ": animations: found more frames of " +
                         to_string(model.num_vertices) + " vertices than the " +
                         to_string(most) + " that are expected at most; the last time is " +
-                        to_string(clip.end) + " s: choose one animation, or a lower --fps"};
+                        to_string(clip.end) +
+                        " s: choose one animation, or a lower 'frame_rate'"};
     }
     first.push_back(static_cast<std::uint32_t>(frames));
   }

@@ -109,7 +109,7 @@ class AssetMaker {
     if (const auto size = std::filesystem::file_size(path, unknown);
         !unknown && size > max_bytes_) {
       return leave_out(path + ": " + std::to_string(size) +
-                       " bytes, too many for --max-memory");
+                       " bytes, too many for 'max_memory_bytes'");
     }
     auto bytes = read_whole_file(path, max_bytes_);
     if (!bytes) return leave_out(bytes.error().message);

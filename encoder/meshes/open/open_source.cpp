@@ -38,8 +38,7 @@ InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options,
   if (format == nullptr && is_stream(path)) {
     return InputError{
         name_of_input(path) +
-        ": is already an RLPC stream; rlpcdec decodes it, rlpcinfo --extract makes "
-        "it smaller"};
+        ": is already an RLPC stream; rlpcdec decodes it, rlpcinfo makes it smaller"};
   }
   // The file may be unreadable, or a pointer in its place. (Not all of a pipe is read.)
   const bool is_whole =
@@ -61,7 +60,7 @@ InputResult<std::unique_ptr<FrameSource>> open_file(const InputOptions& options,
     case Holds::kPoints:
       return InputError{name_of_input(path) +
                         ": a point cache has no triangles; give its mesh as the input and the "
-                        "cache with --points"};
+                        "cache as 'points'"};
     default:
       return open_mesh_sequence({{path}}, options);
   }
@@ -103,24 +102,24 @@ bool has_clips(const InputOptions& options) {
 std::optional<InputError> check_gltf_options(const InputOptions& options) {
   if (!options.points.empty() && is_gltf(options.path)) {
     return InputError{name_of_input(options.path) +
-                      ": a glTF file brings its own animation and takes no --points; leave it "
+                      ": a glTF file brings its own animation and takes no 'points'; leave it "
                       "out, or replace this file by the mesh (" +
                       extensions_text({InputFormat::Holds::kMesh}) + ") of " +
                       name_of_input(options.points)};
   }
   if ((options.animations.empty() && options.weld) || has_clips(options)) return std::nullopt;
-  return InputError{name_of_input(options.path) +
-                    (options.weld
-                         ? ": --animation is for .glb and .gltf files"
-                         : ": --no-weld is for .glb and .gltf files; other formats are never "
-                           "welded")};
+  return InputError{
+      name_of_input(options.path) +
+      (options.weld ? ": 'animations' is for .glb and .gltf files"
+                    : ": 'weld = false' is for .glb and .gltf files; other formats are never "
+                      "welded")};
 }
 
 InputResult<std::unique_ptr<FrameSource>> open_frame_source(const InputOptions& options) {
   if (!options.more_paths.empty() && !options.points.empty()) {
     return InputError{
         name_of_input(options.points) +
-        ": a point cache has the frames of one mesh; give one INPUT with --points"};
+        ": a point cache has the frames of one mesh; give one mesh with 'points'"};
   }
   if (auto error = check_gltf_options(options)) return *error;
   auto source = open_with_its_axes(options);

@@ -206,9 +206,9 @@ TEST_F(FrameSourceTest, RefusesGltfOptionsForOtherFiles) {
   const std::string points = put("a.pc2", pc2(3, 1, std::vector<float>(9)));
   for (const std::string& cache : {std::string(), points}) {
     expect_error({mesh, cache, {}, {"Walk"}},
-                 mesh + ": --animation is for .glb and .gltf files");
+                 mesh + ": 'animations' is for .glb and .gltf files");
     expect_error({mesh, cache, {}, {}, false},
-                 mesh + ": --no-weld is for .glb and .gltf files");
+                 mesh + ": 'weld = false' is for .glb and .gltf files");
   }
 }
 

@@ -161,7 +161,7 @@ std::vector<std::string> notes_on_pc2(const std::string& path, const Layout& lay
   }
   if (list.empty()) return {};
   return {"dropped: " + list + " of " + path +
-          "; each sample is a frame, the first at 0 s (--fps sets their rate)"};
+          "; each sample is a frame, the first at 0 s ('frame_rate' sets their rate)"};
 }
 
 // The times of an MDD file.
@@ -209,7 +209,8 @@ InputResult<FrameTimes> read_times(InputFile& file, const Layout& layout,
 // Returns notes on times of an MDD file that get lost.
 std::vector<std::string> notes_on_times(const std::string& path, const FrameTimes& times,
                                         bool has_rate) {
-  const std::string fps = has_rate ? "" : "; frames are 1/30 s apart (--fps sets another rate)";
+  const std::string fps =
+      has_rate ? "" : "; frames are 1/30 s apart ('frame_rate' sets another rate)";
   if (!times.may_be_times) {
     return {"dropped: the frame times of " + path + ", which are not finite and ascending" +
             fps};

@@ -22,6 +22,7 @@
 #include "encoder/meshes/input_format.h"
 #include "encoder/meshes/open/open_source.h"
 #include "encoder/programs/rlpcenc/encode_command_line.h"
+#include "encoder/programs/setting_options.h"
 
 namespace rlpc {
 namespace {
@@ -208,7 +209,7 @@ std::optional<InputError> note_units(const EncodeCommandLine& line) {
 }  // namespace
 
 int complain(const std::string& message, EncodeExitCode code) {
-  print_message("rlpcenc", message);
+  print_message("rlpcenc", with_encoder_options(message));
   return code;
 }
 

@@ -68,7 +68,7 @@ std::optional<std::string> error_of_pattern(const FramePattern& pattern) {
   }
   if (pattern.temporal_layers < 1 || pattern.temporal_layers > pattern.num_depths()) {
     return "this pattern has 1 to " + to_string(pattern.num_depths()) +
-           " temporal layers (--temporal-layers), as many as its frames have depths";
+           " temporal layers ('temporal_layers'), as many as its frames have depths";
   }
   return std::nullopt;
 }

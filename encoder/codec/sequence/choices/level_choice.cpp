@@ -15,10 +15,11 @@ std::optional<InputError> choose_level(SequenceHeader& header, std::uint32_t lon
       return std::nullopt;
     }
   }
-  return InputError{"no level allows " + std::to_string(header.num_vertices) + " vertices, " +
-                    std::to_string(header.num_triangles) + " triangles and GOFs of " +
-                    std::to_string(longest) +
-                    " frames (specification, Annex B); use a smaller --gof, or split the mesh"};
+  return InputError{
+      "no level allows " + std::to_string(header.num_vertices) + " vertices, " +
+      std::to_string(header.num_triangles) + " triangles and GOFs of " +
+      std::to_string(longest) +
+      " frames (specification, Annex B); use a smaller 'gof_frames', or split the mesh"};
 }
 
 LevelNeeds::LevelNeeds(const EncodedSpan& encoded)
@@ -70,7 +71,7 @@ std::optional<InputError> raise_level(std::uint32_t& level_idc, const LevelNeeds
                       std::to_string(needs.factors) + " factors and units of " +
                       std::to_string(needs.unit_bytes) +
                       " bytes, more than any level allows (specification, Annex B); use a " +
-                      "smaller --gof or fewer --components"};
+                      "smaller 'gof_frames' or fewer 'components'"};
   }
   level_idc = *raised;
   return std::nullopt;

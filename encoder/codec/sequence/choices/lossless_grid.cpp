@@ -83,8 +83,8 @@ InputResult<GridChoice> grid_of_source(FrameSource& source, const Extent& extent
       " (from 0), vertex " + std::to_string(finest->index / 3) + ": " +
       "xyz"[finest->index % 3] + " is " + shortest_text(finest->value) +
       ", a multiple of no more than 2^" + std::to_string(log2_step) +
-      ": the coordinates have no common grid of 24 bits or fewer. Use --lossless BITS, which "
-      "rounds them to a grid of that many bits, up to 24"};
+      ": the coordinates have no common grid of 24 bits or fewer. Use 'target = lossless, "
+      "target_value = BITS', which rounds them to a grid of that many bits, up to 24"};
 }
 
 GridChoice grid_of_bits(const Extent& extent, int position_bits) {

@@ -83,7 +83,8 @@ TEST(LosslessGrid, NamesTheCoordinateThatNeedsAFinerGrid) {
   EXPECT_NE(error.error().message.find("frame 0 (from 0), vertex 0: y is 5.9604645e-08"),
             std::string::npos)
       << error.error().message;
-  EXPECT_NE(error.error().message.find("--lossless BITS"), std::string::npos);
+  EXPECT_NE(error.error().message.find("'target = lossless, target_value = BITS'"),
+            std::string::npos);
   Points narrow({1.0F, 0x1p-23F, 0.0F, 0.0F, 0.0F, 0.5F});
   EXPECT_EQ(own_grid(narrow)->position_bits, 24);
   // The box is small, but too far from the origin.
