@@ -1,6 +1,7 @@
 // Colours, emission and their textures, and normal maps, from the asset of a stream: a GLB without
 // geometry. It is from anybody: what does not fit is left out, and nothing is fetched.
 import { glbChunks, glbJson } from "../package/src/glb.js";
+import { uvName } from "../package/src/sets.js";
 
 const kMostPixels = 4096; // of a side of a texture; larger ones are scaled down
 const kWhite = [1, 1, 1, 1];
@@ -65,7 +66,7 @@ export async function readMaterials(bytes) {
     return {
       picture: index === undefined ? undefined : await pictureAt(image),
       sampler: samplers[sampler] ?? {},
-      uv: `uv${transform?.texCoord ?? texCoord ?? 0}`,
+      uv: uvName(transform?.texCoord ?? texCoord ?? 0),
       rows: rowsOf(transform),
     };
   };

@@ -1,6 +1,6 @@
 // Shown stream, with its reference and the check of all its frames: the page's use of the package.
 import { RlpcDecoder } from "../package/src/index.js";
-import { byMaterial, hasNormals } from "../package/src/sets.js";
+import { byMaterial, colourSet, hasNormals, materialSet, uvSets } from "../package/src/sets.js";
 import { readMaterials } from "./asset_materials.js";
 import { vertexDistances } from "./distances.js";
 
@@ -9,10 +9,8 @@ const kMostSpare = 4;
 
 /** Returns the look for Viewer.setMesh(), from the names of attributes. */
 function lookOf({ attributes }, parts) {
-  const uvs = [...attributes.values()].filter(({ name, components }) =>
-    /^uv\d+$/.test(name) && components === 2).map(({ name, values }) => [name, values]);
-  const tints = attributes.get("colour0");
-  return { uvs, tints: tints?.components >= 3 ? tints : undefined, parts };
+  const uvs = uvSets(attributes).map(({ name, values }) => [name, values]);
+  return { uvs, tints: colourSet(attributes), parts };
 }
 
 export class StreamSession {
@@ -80,7 +78,7 @@ export class StreamSession {
       const { materials, problems } = told;
       this.drawn = drawn;
       const { indices, groups } =
-        byMaterial(drawn.indices, sets.get("material"), materials.length);
+        byMaterial(drawn.indices, materialSet(sets), materials.length);
       return { numVertices: drawn.vertices.length, triangles: indices, materials,
         problems: [...lost, ...problems],
         isFlat: materials.length > 0 && !hasNormals(sets), look: lookOf(drawn, groups) };

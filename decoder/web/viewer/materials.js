@@ -1,10 +1,11 @@
 // Colours and textures of the parts of a mesh, for the surface shader.
+import { uvName } from "../package/src/sets.js";
 
 /** Texture units by contents; the shadow has the first. */
 export const kUnits = { base: 1, normal: 2, emission: 3 };
 const kUploadUnit = kUnits.base;
 
-const kNoTexture = { sampler: {}, uv: "uv0", rows: [[1, 0, 0], [0, 1, 0]] };
+const kNoTexture = { sampler: {}, uv: uvName(0), rows: [[1, 0, 0], [0, 1, 0]] };
 
 /** Default material. */
 const kPlain = { base: [0.491, 0.451, 0.392, 1], emission: [0, 0, 0], normalScale: 1, cutoff: 0,

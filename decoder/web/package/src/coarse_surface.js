@@ -2,6 +2,7 @@
 // have one drawn vertex or, at a seam, one per side. The corners of a coarse triangle take the
 // drawn vertices of one side; where it has corners on both, texture coordinates of one side are
 // continued to the other.
+import { uvSets } from "./sets.js";
 import { mapped, Unfolding } from "./unfolding.js";
 
 /** Returns the first place of each number below `count` in an ascending list, and the end. */
@@ -32,8 +33,7 @@ class TrianglesAround {
  * texture coordinates. */
 class Corners {
   constructor(drawn, around, numVertices) {
-    this.sets = [...drawn.attributes.values()].filter(({ name, components }) =>
-      name.startsWith("uv") && components === 2);
+    this.sets = uvSets(drawn.attributes);
     this.unfolding = new Unfolding(drawn, this.sets.map(({ values }) => values));
     this.copies = starts(drawn.vertices, numVertices); // [vertex of the stream] first drawn vertex
     this.around = around;

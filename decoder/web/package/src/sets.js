@@ -1,12 +1,50 @@
-// Meaning of the names of attributes (Table F-1), for three.js and for the player.
+// Names of attributes and their meaning (Table F-1), for three.js and for the player.
+
+const kNormal = "normal";
+const kMaterial = "material";
+const kColour = "colour0"; // the set that is drawn
+
+/** Returns the name of set `number` of texture coordinates. */
+export function uvName(number) {
+  return `uv${number}`;
+}
+
+/** Returns the number of a set of texture coordinates; undefined if it is another set. */
+function uvNumber({ name, components }) {
+  const digits = components === 2 ? /^uv(\d+)$/.exec(name)?.[1] : undefined;
+  return digits === undefined ? undefined : Number(digits);
+}
+
+/** Returns the sets of texture coordinates among attributes by name. */
+export function uvSets(attributes) {
+  return [...attributes.values()].filter((set) => uvNumber(set) !== undefined);
+}
+
+/** Returns the colours to draw among attributes by name; undefined without any. */
+export function colourSet(attributes) {
+  const set = attributes.get(kColour);
+  return set?.components >= 3 ? set : undefined;
+}
+
+/** Returns the materials of triangles among attributes by name; undefined without any. */
+export function materialSet(attributes) {
+  return attributes.get(kMaterial);
+}
+
+/** Returns the name of a set in three.js: uv, uv1, uv2, uv3, color; undefined if it has none. */
+export function nameInThree(set) {
+  const number = uvNumber(set);
+  if (number <= 3) return number === 0 ? "uv" : `uv${number}`;
+  return set.name === kColour && set.components >= 3 ? "color" : undefined;
+}
 
 /** Returns whether attributes() of a decoder have normals that can be computed for each frame. */
 export function hasNormals(sets) {
-  return ["unitVectors", "smoothing"].includes(sets.get("normal")?.kind);
+  return ["unitVectors", "smoothing"].includes(sets.get(kNormal)?.kind);
 }
 
 /** Sorts triangles by material: { indices, groups }, groups with start, count and material.
- * materialOf: the set `material`, or undefined if all have the first. Numbers from `most` on mean
+ * materialOf: from materialSet(), or undefined if all have the first. Numbers from `most` on mean
  * no material, and become `most`. */
 export function byMaterial(indices, materialOf, most) {
   const count = indices.length / 3;

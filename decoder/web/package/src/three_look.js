@@ -4,7 +4,7 @@ import { BufferAttribute, Mesh, MeshStandardMaterial } from "three";
 import { coarseSurface } from "./coarse_surface.js";
 import { RlpcDecoder } from "./decoder.js";
 import { glbJson } from "./glb.js";
-import { byMaterial, hasNormals } from "./sets.js";
+import { byMaterial, hasNormals, materialSet, nameInThree, uvName } from "./sets.js";
 
 const kUsualColour = 0xb4bcc4;
 
@@ -36,7 +36,7 @@ export async function loadLook(decoder,
     const [drawn, sets, asset] = await Promise.all([whole.drawn(), whole.attributes(),
       hasAsset ? loadAsset(decoder) : undefined]);
     const gltf = asset && !material ? await loadMaterials(asset, textures, gltfLoader) : undefined;
-    const look = { drawn, materialOf: sets.get("material"), gltf, equalUvs: equalUvsOf(asset),
+    const look = { drawn, materialOf: materialSet(sets), gltf, equalUvs: equalUvsOf(asset),
       isFlat: gltf && !hasNormals(sets) };
     return decoder.coarseVertices ? coarseLook(look, decoder) : look;
   } catch (error) {
@@ -108,14 +108,6 @@ function withoutTextures(glb) {
     (key, value) => (key.endsWith("Texture") ? undefined : value));
 }
 
-/** Returns the name of an attribute in three.js: uv, uv1, uv2, uv3, color; undefined if it has
- * none. */
-function nameInThree({ name, components }) {
-  const uv = /^uv([0-3])$/.exec(name)?.[1];
-  if (uv && components === 2) return uv === "0" ? "uv" : `uv${uv}`;
-  return name === "colour0" && components >= 3 ? "color" : undefined;
-}
-
 /** Sets the attributes of a geometry. equalUvs: of the look; equal sets are one attribute with
  * several names. */
 export function setAttributes(geometry, { attributes }, equalUvs) {
@@ -124,7 +116,8 @@ export function setAttributes(geometry, { attributes }, equalUvs) {
     if (name) geometry.setAttribute(name, new BufferAttribute(set.values, set.components));
   }
   for (const [number, first] of equalUvs.entries()) {
-    const [name, from] = [number, first].map((n) => nameInThree({ name: `uv${n}`, components: 2 }));
+    const [name, from] = [number, first].map((n) =>
+      nameInThree({ name: uvName(n), components: 2 }));
     if (!name || geometry.attributes[name] || !geometry.attributes[from]) continue;
     geometry.setAttribute(name, geometry.attributes[from]);
   }
