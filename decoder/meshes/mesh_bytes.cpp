@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "common/codec/attributes/attribute_names.h"
 #include "common/files/messages.h"
 #include "decoder/meshes/obj_bytes.h"
 #include "decoder/meshes/ply_bytes.h"
@@ -91,15 +92,15 @@ std::string frame_rate_text(FrameRate frame_rate) {
 }
 
 const AttributeSet* find_uv(const SinkOptions& options, std::uint32_t set) {
-  return find_values(options, ("uv" + std::to_string(set)).c_str(), 2, 2);
+  return find_values(options, uv_name(set).c_str(), 2, 2);
 }
 
 MeshAttributes::MeshAttributes(const SinkOptions& options)
     : uv(find_uv(options, 0)),
-      normal(find_values(options, "normal", 0, 3)),
-      colour(find_values(options, "colour0", 3, 4)),
-      material(find_indices(options, "material")),
-      part(find_indices(options, "part")) {
+      normal(find_values(options, kNormalName, 0, 3)),
+      colour(find_values(options, colour_name(0).c_str(), 3, 4)),
+      material(find_indices(options, kMaterialName)),
+      part(find_indices(options, kPartName)) {
   if (normal == nullptr || normal->header.kind == ValueKind::kSmoothing) return;
   if (number_components(normal->header) != 3) normal = nullptr;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/codec/attributes/attribute_names.h"
+
 namespace rlpc {
 
 bool is_drawable(const AttributeHeader& header, std::span<const Triangle> triangles) {
@@ -22,7 +24,8 @@ Vector<const AttributeSet*> drawable_sets(const Vector<AttributeSet>& sets,
 bool is_normal_set(const AttributeHeader& header) {
   const bool is_direction =
       header.kind == ValueKind::kUnitVectors || header.kind == ValueKind::kSmoothing;
-  return header.name == "normal" && is_direction && header.domain != AttributeDomain::kTriangle;
+  return header.name == kNormalName && is_direction &&
+         header.domain != AttributeDomain::kTriangle;
 }
 
 DrawnMesh::DrawnMesh(Vector<const AttributeSet*> sets, std::span<const Triangle> triangles,

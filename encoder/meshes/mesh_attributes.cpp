@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/codec/attributes/attribute_names.h"
 #include "encoder/codec/math/det_math.h"
 
 namespace rlpc {
@@ -64,7 +65,7 @@ SourceAttribute uv_attribute(std::vector<float> uv,
   }
   if (uses_usual) uv.insert(uv.end(), {0.0F, 0.0F});
   for (std::size_t i = 1; i < uv.size(); i += 2) uv[i] = 1.0F - uv[i];
-  return attribute("uv0", 2, std::move(uv), std::move(value_of_corner));
+  return attribute(uv_name(0), 2, std::move(uv), std::move(value_of_corner));
 }
 
 SourceAttribute normal_attribute(std::vector<float> normals,
@@ -89,7 +90,8 @@ SourceAttribute normal_attribute(std::vector<float> normals,
     }
     value_of_corner[c] = of_face;
   }
-  SourceAttribute set = attribute("normal", 3, std::move(normals), std::move(value_of_corner));
+  SourceAttribute set =
+      attribute(kNormalName, 3, std::move(normals), std::move(value_of_corner));
   set.kind = SourceAttribute::Kind::kNormals;
   return set;
 }
@@ -105,7 +107,7 @@ SourceAttribute colour_attribute(std::vector<float> values, std::uint32_t num_co
                           : static_cast<float>(value);
   }
   SourceAttribute set =
-      attribute("colour0", num_components, std::move(values), std::move(value_of_corner));
+      attribute(colour_name(0), num_components, std::move(values), std::move(value_of_corner));
   if (are_bytes) {
     set.kind = SourceAttribute::Kind::kIntegers;
     set.max_value = kSteps;

@@ -40,8 +40,9 @@ _SKINNED = "encoder/codec/kinds/skinned"
 _QUANTISE = {_SKINNED + "/fit", _SKINNED + "/tracks"}
 _SKINNED_ROOMS = _QUANTISE | {_SKINNED + "/quantise", _SKINNED + "/search", _SKINNED + "/reuse"}
 # Readers and writers of mesh files know these, and nothing of coding.
-_MESH_FILES = {"common", "common/memory", "common/codec/bits/fixed_point.h", "common/codec/mesh",
-               "common/files", "common/json"}
+_MESH_FILES = {"common", "common/memory", "common/codec/attributes/attribute_names.h",
+               "common/codec/bits/fixed_point.h", "common/codec/mesh", "common/files",
+               "common/json"}
 _READERS = "encoder/meshes"
 # Formats of mesh files: the folders that define one.
 _FORMATS = {
@@ -214,8 +215,9 @@ ROOMS = {
                                        "encoder/meshes/gltf/document"},
     "encoder/programs": {"common/cli"},
     "encoder/programs/rlpcenc": {
-        "common/cli", "common/codec/syntax", "common/files", "common/json", "encoder",
-        "encoder/codec/kind_choices.h", "encoder/codec/kinds/inter", "encoder/codec/metrics",
+        "common/cli", "common/codec/attributes/attribute_names.h", "common/codec/syntax",
+        "common/files", "common/json", "encoder", "encoder/codec/kind_choices.h",
+        "encoder/codec/kinds/inter", "encoder/codec/metrics",
         "encoder/codec/sequence", "encoder/codec/sequence/target", "encoder/meshes",
         "encoder/meshes/open", "encoder/programs"},
     "encoder/testing": _ENCODER | _QUANTISE | _MESH_FILES | {

@@ -13,6 +13,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
+import check_attributes
 import check_clauses
 import check_constants
 import check_float
@@ -403,6 +404,30 @@ class Settings(RealTree):
         with self.without("encoder/programs"):
             self.assertTrue(any("has no entries" in complaint
                                 for complaint in check_settings.check(self.root)[0]))
+
+
+class Attributes(RealTree):
+    def test_the_tree_is_clean(self):
+        self.assertEqual(check_attributes.check(self.root)[0], [])
+
+    def test_literals_are_found(self):
+        for name, line in (("encoder/meshes/gltf/attributes.cpp", 'auto a = find("uv0");'),
+                           ("decoder/surface/drawn_mesh.cpp", 'bool b = name == "normal";'),
+                           ("encoder/meshes/obj/obj_reader.cpp", 'add("material");'),
+                           ("decoder/web/viewer/viewer.js", 'sets.get("material");'),
+                           ("decoder/web/package/src/three.js", "`uv${number}`;")):
+            with self.subTest(name=name):
+                self.complaint(check_attributes.check, name,
+                               lambda text, line=line: line + "\n" + text, f"{name}:1",
+                               "Table F-1")
+
+    def test_names_are_those_of_the_specification(self):
+        for name, old, new in (
+                (check_attributes.HEADER, 'kPartName = "part"', 'kPartName = "parts"'),
+                ("spec/annex-f-attributes.md", "| `part` |", "| `tangent` |")):
+            with self.planted(name, lambda text, old=old, new=new: text.replace(old, new)):
+                found = check_attributes.check(self.root)[0]
+            self.assertTrue(any("differ from those of Table F-1" in text for text in found), found)
 
 
 class Specification(RealTree):

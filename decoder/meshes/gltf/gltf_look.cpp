@@ -5,19 +5,9 @@
 #include <optional>
 #include <utility>
 
+#include "common/codec/attributes/attribute_names.h"
+
 namespace rlpc {
-namespace {
-
-// Returns the number of a name that is the word and a number, as in Table F-1.
-std::optional<std::uint32_t> number_after(const std::string& word, const std::string& name) {
-  constexpr std::uint32_t kMost = 255;  // sets are numbered from 0 on without gaps
-  for (std::uint32_t n = 0; n <= kMost; ++n) {
-    if (name == word + std::to_string(n)) return n;
-  }
-  return std::nullopt;
-}
-
-}  // namespace
 
 GltfLook::GltfLook(const std::vector<AttributeSet>& sets, std::span<const Triangle> triangles,
                    std::uint32_t num_vertices, const std::string& asset)
@@ -27,8 +17,9 @@ GltfLook::GltfLook(const std::vector<AttributeSet>& sets, std::span<const Triang
     if (!is_drawable(set.header, triangles)) continue;
     const bool is_normal = is_normal_set(set.header) && !triangles.empty();
     const std::uint32_t width = number_components(set.header);
-    const auto uv = width == 2 ? number_after("uv", set.header.name) : std::nullopt;
-    const auto colour = width >= 3 ? number_after("colour", set.header.name) : std::nullopt;
+    const auto uv = width == 2 ? number_after(kUvPrefix, set.header.name) : std::nullopt;
+    const auto colour =
+        width >= 3 ? number_after(kColourPrefix, set.header.name) : std::nullopt;
     if (uv) uvs_[*uv].set = split.size();
     if (colour) colours_[*colour] = {split.size(), width, {}};
     if (is_normal || uv || colour) split.push_back(&set);
@@ -50,8 +41,8 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
                       set->header.num_components == 1;
     return fits ? set : nullptr;
   };
-  const AttributeSet* const material = of_triangles("material");
-  const AttributeSet* const part = of_triangles("part");
+  const AttributeSet* const material = of_triangles(kMaterialName);
+  const AttributeSet* const part = of_triangles(kPartName);
   const std::size_t num_materials =
       asset_.root().contains("materials") ? asset_.root()["materials"].size() : 0;
   std::map<std::pair<std::uint32_t, std::optional<std::uint32_t>>, std::size_t> found;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "common/codec/attributes/attribute_names.h"
 #include "common/codec/attributes/recon/attribute_prediction.h"
 #include "encoder/codec/math/det_math.h"
 
@@ -113,7 +114,7 @@ int log2_step_of_uv(const SourceAttribute& source, const AttributeSettings& sett
   constexpr double kMostScale = 1 << 10;  // fixed: beyond, textures are noise
   UvUse use;
   for (std::size_t set = 0; set < settings.uv_uses.size(); ++set) {
-    if (source.name == "uv" + std::to_string(set)) use = settings.uv_uses[set];
+    if (source.name == uv_name(static_cast<std::uint32_t>(set))) use = settings.uv_uses[set];
   }
   const double scale = std::min(use.scale, kMostScale);
   int log2_step = -settings.uv_bits;
@@ -224,7 +225,7 @@ QuantisedAttribute quantise_attribute(const SourceAttribute& source,
     quantise_integers(source, out);
   } else if (settings.exact) {
     quantise_floats(source, out);
-  } else if (source.name.starts_with("uv")) {
+  } else if (source.name.starts_with(kUvPrefix)) {
     quantise_uv(source, settings, out);
   } else {
     quantise_numbers(source, log2_step_of_range(source, settings.number_bits), out);

@@ -76,7 +76,7 @@ std::optional<InputError> check_unused(const std::vector<Parameter>& parameters,
   return std::nullopt;
 }
 
-// Returns the words for a profile and those above it: "main or high".
+// Returns the setting of a profile or those above it: "'profile = main' or high".
 std::string profiles_with(std::uint32_t profile_idc) {
   constexpr std::array<const char*, 3> kWords{"baseline", "main", "high"};
   std::string words = std::string("'profile = ") + kWords[profile_idc] + "'";

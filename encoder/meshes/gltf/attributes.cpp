@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "common/codec/attributes/attribute_names.h"
+
 namespace rlpc {
 namespace {
 
@@ -15,9 +17,9 @@ using Attribute = GltfGeometry::Attribute;
 
 // Returns the name of a set in Table F-1.
 std::string set_name(const std::string& semantic) {
-  if (semantic == "NORMAL") return "normal";
+  if (semantic == "NORMAL") return kNormalName;
   const std::string number = semantic.substr(semantic.rfind('_') + 1);
-  return (semantic.starts_with("TEXCOORD_") ? "uv" : "colour") + number;
+  return (semantic.starts_with("TEXCOORD_") ? kUvPrefix : kColourPrefix) + number;
 }
 
 const Attribute* find(const GltfGeometry& geometry, const std::string& semantic) {
@@ -139,7 +141,7 @@ class AttributeCollector {
   // Adds values; instances without any get white, or the origin of textures.
   void add_values(const GltfModel::Instance& instance, const Attribute* attribute, float sign,
                   SourceAttribute& set) const {
-    const bool is_colour = set.name.starts_with("colour");
+    const bool is_colour = set.name.starts_with(kColourPrefix);
     const float one = set.max_value == 0 ? 1.0F : static_cast<float>(set.max_value);
     // Normalised integers of several widths become numbers.
     const float scale = attribute != nullptr && set.max_value == 0 && attribute->max_value != 0
@@ -157,8 +159,8 @@ class AttributeCollector {
 
   void add_triangle_sets(SourceAttributes& all) const {
     if (triangles_.empty()) return;
-    SourceAttribute material{.name = "material"};
-    SourceAttribute part{.name = "part"};
+    SourceAttribute material{.name = kMaterialName};
+    SourceAttribute part{.name = kPartName};
     for (SourceAttribute* const set : {&material, &part}) {
       set->domain = AttributeDomain::kTriangle;
       set->kind = SourceAttribute::Kind::kIntegers;

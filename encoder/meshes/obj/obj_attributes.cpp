@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/codec/attributes/attribute_names.h"
 #include "encoder/meshes/mesh_attributes.h"
 
 namespace rlpc {
@@ -172,8 +173,8 @@ bool ObjAttributes::finish(SingleMesh& mesh, const MeshLimit& limit) {
     const auto numbers = numbers_of(what, num_materials, num_triangles);
     if (auto set = triangle_attribute(name, numbers)) sets.push_back(std::move(*set));
   };
-  add("material", &Run::material);
-  add("part", &Run::part);
+  add(kMaterialName, &Run::material);
+  add(kPartName, &Run::part);
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/codec/attributes/attribute_names.h"
 #include "encoder/meshes/input_file.h"
 #include "encoder/meshes/mesh_attributes.h"
 #include "encoder/meshes/mesh_text.h"
@@ -233,7 +234,8 @@ bool PlyAttributes::finish(SingleMesh& mesh, const MeshLimit& limit) {
   if (are_materials_bad_) {
     mesh.notes.emplace_back("dropped: numbers of materials, some of which are not 0 to 65535");
   } else if (has_materials_) {
-    if (auto set = triangle_attribute("material", materials_)) sets.push_back(std::move(*set));
+    if (auto set = triangle_attribute(kMaterialName, materials_))
+      sets.push_back(std::move(*set));
   }
   return true;
 }

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/codec/attributes/attribute_names.h"
 #include "encoder/meshes/input_file.h"
 #include "encoder/meshes/input_format.h"
 #include "encoder/meshes/materials/material_files.h"
@@ -143,14 +144,14 @@ class MeshSequence : public FrameSource {
   void compare_attributes(std::uint32_t frame, SingleMesh& mesh) {
     has_compared_attributes_[frame] = true;
     for (SourceAttribute& set : mesh.attributes.sets) {
-      if (set.name == "material" && !mesh.materials.names.empty()) {
+      if (set.name == kMaterialName && !mesh.materials.names.empty()) {
         renumber(mesh.materials.names, materials().names, set);
-      } else if (set.name == "part" && !mesh.materials.part_names.empty()) {
+      } else if (set.name == kPartName && !mesh.materials.part_names.empty()) {
         renumber(mesh.materials.part_names, materials().part_names, set);
       }
       const SourceAttribute* const first = find_attribute(attributes(), set.name);
       // Normals move with the frames: normals of the stream are compared (add_later_normals).
-      if (first != nullptr && set.name == "normal") continue;
+      if (first != nullptr && set.name == kNormalName) continue;
       if (first != nullptr && are_near(*first, set, triangles())) continue;
       note_once(frame, set.name,
                 first == nullptr ? " is dropped, as " + files_.path(0) + " has none"

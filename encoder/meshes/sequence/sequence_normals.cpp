@@ -8,13 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "common/codec/attributes/attribute_names.h"
+
 namespace rlpc {
 namespace {
 
 using Normal = std::array<float, 3>;
 
 SourceAttribute* find_normals(SourceAttributes& attributes) {
-  const auto found = std::ranges::find(attributes.sets, "normal", &SourceAttribute::name);
+  const auto found = std::ranges::find(attributes.sets, kNormalName, &SourceAttribute::name);
   return found == attributes.sets.end() ? nullptr : &*found;
 }
 

@@ -18,6 +18,7 @@
 #include <malloc.h>
 #endif
 
+#include "common/codec/attributes/attribute_names.h"
 #include "common/files/interrupts.h"
 #include "common/files/output_file.h"
 #include "common/files/progress_bar.h"
@@ -62,7 +63,7 @@ void print_attributes(const EncodeReport& r) {
       std::printf(", %s", normal_text(a).c_str());
     } else if (a.largest_error > 0.0) {
       std::printf(", largest error %.3g%s", a.largest_error,
-                  a.name.starts_with("colour") ? " (of linear colours from 0 to 1)" : "");
+                  a.name.starts_with(kColourPrefix) ? " (of linear colours from 0 to 1)" : "");
     }
     std::printf("\n");
   }
