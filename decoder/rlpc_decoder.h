@@ -4,11 +4,11 @@
 //   if (!source) return report(source.error());
 //   auto decoder = rlpc::Decoder::open(std::move(*source));
 //   if (!decoder) return report(decoder.error());
-//   Vector<std::int32_t> positions(3 * decoder->num_vertices());
+//   std::vector<std::int32_t> positions(3 * std::size_t{decoder->num_vertices()});
 //   for (;;) {
 //     const auto more = decoder->next_frame(positions);
-//     if (!more) return report(more.error());   // rule id, element and bit position
-//     if (!*more) break;                        // the stream is complete and has been checked
+//     if (!more) return report(more.error());  // rule id, element and bit position
+//     if (!*more) break;                       // the stream is complete and has been checked
 //     use(decoder->triangles(), positions);
 //   }
 //
@@ -79,6 +79,7 @@ class Decoder {
   // Returns the vertex layers of the whole mesh; 0 in the Baseline profile without
   // coarse_layers, which does not compute them.
   std::uint32_t num_layers() const;
+  // Returns whether vertices are in the order of the encoder's input.
   bool has_vertex_order() const;
   // Returns the JSON text of the last metadata unit so far; empty if there was none.
   const String& metadata() const;
@@ -91,7 +92,9 @@ class Decoder {
   // Returns the asset of the stream (7.16), a GLB without geometry; empty if there is none.
   // Checks only its size. Frames remain decodable after an error.
   Result<String> asset();
+  // Returns whether the stream has an asset, before its first GOF.
   bool has_asset() const;
+  // Returns whether the stream has attributes, before its first GOF.
   bool has_attributes() const;
   // Decodes the attributes (Annex F); empty if the stream has none. Also decodes the first
   // frame, whole even if the options cut it; position() stays the same. Vertices, triangles and
@@ -121,9 +124,10 @@ class Decoder {
   // background with several threads, otherwise during the call. Reports only errors that
   // prevent finding the GOF, which are not sticky; others are reported with its frames.
   Result<bool> prefetch(std::uint32_t frame);
-  // Return the GOF of a frame below num_frames, or all GOFs. They read headers of units, or the
-  // GOF index if there is one, and decode nothing.
+  // Finds the GOF of a frame below num_frames. Reads headers of units, or the GOF index if
+  // there is one, and decodes nothing.
   Result<GofRange> gof_of(std::uint32_t frame);
+  // Finds all GOFs, in order, like gof_of().
   Result<Vector<GofRange>> gofs();
   // Resumes after an error of next_frame() with the next intact GOF, and returns its first
   // frame, which becomes the next one; none if the rest of the stream is lost. The frames from

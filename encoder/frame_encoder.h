@@ -7,6 +7,7 @@
 //     if (const auto error = encoder->add_frame(xyz)) return complain(error->message);
 //   }
 //   const auto report = encoder->finish();
+//   if (!report) return complain(report.error().message);
 //
 // Without a number of frames (FrameFormat::num_frames), the stream is open-ended: frames are
 // added until finish(). With settings.low_delay, each frame is coded and passed to the sink at

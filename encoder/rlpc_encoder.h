@@ -6,6 +6,8 @@
 //   const auto report = rlpc::encode(source, settings, sink);
 //   if (!report) return complain(report.error().message);
 //
+// Errors name settings in quotes, as members are called: 'gof_frames'.
+//
 // encode() decodes the finished stream with the decoder of this project before it passes on any
 // byte. If the stream cannot be decoded, its error is not the one reported, or it is not
 // lossless though it should be, encode() fails and the sink receives nothing.

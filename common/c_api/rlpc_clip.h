@@ -8,9 +8,11 @@
 extern "C" {
 #endif
 
+// Maximum number of clips of a stream. Since 1.2.
 #define RLPC_MAX_CLIPS 4096
 
 // NOLINTBEGIN(readability-identifier-naming): C naming.
+// Named part of a sequence. Since 1.2.
 typedef struct rlpc_clip {
   const char* name;  // UTF-8 without control characters, 1 to 256 bytes
   uint32_t first_frame;

@@ -1,4 +1,18 @@
 // RLPC in C: status codes of rlpc_c_decoder.h and rlpc_c_encoder.h. C99 and C++.
+//
+// Versions: "Since 1.2" is the version of the library that added a type, function, value or
+// member; everything else is in all versions since the first with this interface, 1.1.2.
+// Nothing is removed or changes its meaning before version 2.
+//
+// Structures: those that begin with struct_size may get further members, at their end only.
+// struct_size is the size in the version of the caller, sizeof; an _init function sets it, or
+// the call that fills the structure takes it. Members that an older caller does not know keep
+// their defaults, and are not written. Members that an older library does not know are set to
+// 0 by calls that fill a structure; where the caller has set one to another value, calls that
+// read it return RLPC_BAD_ARGUMENT. Structures without struct_size never change.
+//
+// Threads: functions without a handle may be called by several threads at a time. A handle may
+// be used by one thread at a time; different handles are independent.
 #pragma once
 
 // RLPC_API precedes each function. Programs that link a static library define RLPC_STATIC,
@@ -21,6 +35,7 @@ extern "C" {
 #endif
 
 // NOLINTBEGIN(readability-identifier-naming): C naming.
+// Result of a call. Later versions may add values.
 typedef enum rlpc_status {
   RLPC_OK = 0,
   RLPC_END = 1,             // not an error: no further frames, and the stream is complete
@@ -36,10 +51,10 @@ typedef enum rlpc_status {
 // NOLINTEND(readability-identifier-naming)
 
 // Returns a short text for a status, never null, even for unknown numbers; the error text of a
-// handle has the details. Thread-safe.
+// handle has the details. The text is constant. status: a value of rlpc_status.
 RLPC_API const char* rlpc_status_text(int status);
 
-// Returns the version of the library, such as "1.2.0". Thread-safe.
+// Returns the version of the library, such as "1.2.0". The text is constant.
 RLPC_API const char* rlpc_version(void);
 
 #ifdef __cplusplus

@@ -13,11 +13,11 @@
 //   if (status != RLPC_END) fprintf(stderr, "%s\n", rlpc_decoder_error_text(decoder));
 //   rlpc_decoder_close(decoder);
 //
-// Frames are decoded one at a time, in any order. No function throws or aborts. A handle may be
-// used by one thread at a time; different handles are independent. A thread that calls these
-// functions needs a stack of 64 KiB.
+// Frames are decoded one at a time, in any order. No function throws or aborts. A thread that
+// calls these functions needs a stack of 64 KiB. rlpc_status.h describes versions, structures
+// and the use of handles by threads.
 //
-// Status: functions that return rlpc_status return RLPC_OK on success. Any of them can return
+// Status: functions that return rlpc_status return RLPC_OK on success. All of them can return
 //   RLPC_BAD_ARGUMENT                        a handle, structure or output pointer is null, a
 //                                            struct_size is invalid, or a buffer has the wrong
 //                                            size; the handle remains usable
@@ -53,19 +53,22 @@ extern "C" {
 #endif
 
 // NOLINTBEGIN(readability-identifier-naming): C naming.
+// Handle of a decoder.
 typedef struct rlpc_decoder rlpc_decoder;
 
+// Value of a limit for no limit, and of the index of a set for none.
 #define RLPC_ALL UINT32_MAX
 
 // Source of the memory of a decoder. allocate: returns null if it has no memory; alignment is a
 // power of two. release: receives the size and alignment that the block was allocated with.
-// With several threads, they are called concurrently.
+// With several threads, they are called concurrently. Since 1.2.
 typedef struct rlpc_allocator {
   void* user;
   void* (*allocate)(void* user, size_t size, size_t alignment);
   void (*release)(void* user, void* place, size_t size, size_t alignment);
 } rlpc_allocator;
 
+// Options of a decoder. rlpc_decode_options_init sets the defaults.
 typedef struct rlpc_decode_options {
   size_t struct_size;     // set by rlpc_decode_options_init
   uint32_t max_vertices;  // streams above one of these limits: RLPC_LIMIT_EXCEEDED
@@ -83,24 +86,26 @@ typedef struct rlpc_decode_options {
   void* place;
   size_t place_bytes;
   // Number of temporal layers to decode, 1 or more (High profile); dropping some drops no
-  // frames. RLPC_ALL: all.
+  // frames. RLPC_ALL: all. Since 1.2.
   uint32_t max_temporal_layers;
   // Number of vertex layers of the coarse mesh to decode, 1 or more: num_vertices and
   // num_triangles of rlpc_stream_info, triangles and frames are then its own, and layer groups
-  // that it does not need are dropped. RLPC_ALL: decodes the whole mesh.
+  // that it does not need are dropped. RLPC_ALL: decodes the whole mesh. Since 1.2.
   uint32_t coarse_layers;
   // Memory for GOFs that playback has left and, within half of it, for decoded frames of inter
   // GOFs (High profile), so that returning to them decodes nothing. Estimated; part of
-  // max_memory_bytes, and released where that is short. Default 64 MiB; 0: none.
+  // max_memory_bytes, and released where that is short. Default 64 MiB; 0: none. Since 1.2.
   uint64_t max_cached_bytes;
   // Allocator of all memory of this decoder, including a handle without a place. Both functions
   // null, the default: C++ operator new. Only librlpcdec has it; librlpc: RLPC_UNSUPPORTED.
+  // Since 1.2.
   rlpc_allocator allocator;
   // 1: ignore ancillary units (attributes, the asset, clips, metadata) whose CRC or contents
-  // are wrong; 0, the default: report them as errors.
+  // are wrong; 0, the default: report them as errors. Since 1.2.
   uint32_t skip_damaged_units;
 } rlpc_decode_options;
 
+// Properties of a stream, as far as they are known.
 typedef struct rlpc_stream_info {
   size_t struct_size;  // size passed to rlpc_decoder_info
   uint32_t profile;    // 0: Baseline, 1: Main, 2: High
@@ -116,21 +121,24 @@ typedef struct rlpc_stream_info {
   int32_t grid_origin[3];
   uint32_t position_bits;
   uint32_t has_vertex_order;  // 1: vertices are in the order of the encoder's input
-  uint32_t num_layers;        // vertex layers of the whole mesh, the maximum of coarse_layers;
-                              // 0 in the Baseline profile unless coarse_layers is set
-  double duration_seconds;    // from the first frame to the last; 0 if num_frames is 0
-  // Range of the grid, which bounds all frames; the exact extent is known only after decoding.
+  // Vertex layers of the whole mesh, the maximum of coarse_layers; 0 in the Baseline profile
+  // unless coarse_layers is set. Since 1.2.
+  uint32_t num_layers;
+  double duration_seconds;  // from the first frame to the last; 0 if num_frames is 0; since 1.2
+  // Range of the grid, in units, which bounds all frames; the exact extent is known only after
+  // decoding. Since 1.2.
   float range_min[3];
-  float range_max[3];
+  float range_max[3];  // since 1.2
 } rlpc_stream_info;
 
-// Frames of a GOF, which are decoded together.
+// Frames of a GOF, which are decoded together. Since 1.2.
 typedef struct rlpc_gof {
   uint32_t first_frame;
   uint32_t num_frames;
 } rlpc_gof;
 
 // Estimates of memory, as compared with max_memory_bytes: upper bounds of what is allocated.
+// Since 1.2.
 typedef struct rlpc_memory {
   size_t struct_size;     // size passed to rlpc_decoder_memory
   uint64_t stream_bytes;  // the open stream: connectivity and data derived from it, four
@@ -154,20 +162,25 @@ RLPC_API void rlpc_decode_options_init(rlpc_decode_options* options, size_t stru
 // Returns the size of a handle, for rlpc_decode_options.place.
 RLPC_API size_t rlpc_decoder_bytes(void);
 
-// Opens a stream: reads up to its first GOF, including the asset to verify its CRC. options may
-// be null. Returns a stream error, RLPC_BAD_ARGUMENT for options out of range, or
-// RLPC_UNSUPPORTED for an allocator that the library lacks. On failure, *decoder is still a
-// handle, which holds the error text and must be closed; it is null only if an argument is null
-// or invalid, or if there is no memory for a handle.
-//
-// _memory: the bytes must stay valid and unchanged until the handle is closed.
+// Opens a stream in memory: reads up to its first GOF, including the asset to verify its CRC.
+//   bytes    num_bytes of them, which must stay valid and unchanged until the handle is closed
+//   options  null: the defaults
+// Returns a stream error, RLPC_BAD_ARGUMENT for options out of range, or RLPC_UNSUPPORTED for
+// an allocator that the library lacks. On failure, *decoder is still a handle, which holds the
+// error text and must be closed; it is null only if an argument is null or invalid, or if there
+// is no memory for a handle.
 RLPC_API rlpc_status rlpc_decoder_open_memory(const void* bytes, size_t num_bytes,
                                               const rlpc_decode_options* options,
                                               rlpc_decoder** decoder);
+// Opens a file, a pipe or a device, like rlpc_decoder_open_memory. A pipe or device is read
+// into memory as far as it is needed (max_memory_bytes). path: in the encoding of the system.
+// Returns what rlpc_decoder_open_memory returns; RLPC_IO_FAILED if the file cannot be read.
 RLPC_API rlpc_status rlpc_decoder_open_file(const char* path,
                                             const rlpc_decode_options* options,
                                             rlpc_decoder** decoder);
-// Copies *source; its `user` must stay valid until the handle is closed.
+// Opens a stream that a callback reads, like rlpc_decoder_open_memory. Copies *source; its
+// `user` must stay valid until the handle is closed. Returns what rlpc_decoder_open_memory
+// returns; RLPC_IO_FAILED if the callback fails.
 RLPC_API rlpc_status rlpc_decoder_open_source(const rlpc_source* source,
                                               const rlpc_decode_options* options,
                                               rlpc_decoder** decoder);
@@ -178,7 +191,7 @@ RLPC_API void rlpc_decoder_close(rlpc_decoder* decoder);
 // seeks has succeeded since. Valid until the next call on the handle.
 RLPC_API const char* rlpc_decoder_error_text(const rlpc_decoder* decoder);
 
-// Describes the stream. struct_size: sizeof *info.
+// Describes the stream. struct_size: sizeof *info. Decodes nothing.
 RLPC_API rlpc_status rlpc_decoder_info(rlpc_decoder* decoder, rlpc_stream_info* info,
                                        size_t struct_size);
 // Copies the vertex indices, three per triangle. num_values: 3 * num_triangles.
@@ -186,26 +199,27 @@ RLPC_API rlpc_status rlpc_decoder_triangles(rlpc_decoder* decoder, uint32_t* ind
                                             size_t num_values);
 // Copies the vertex indices as integers of index_bytes bytes, 2 or 4. num_bytes: 3 *
 // num_triangles * index_bytes. Returns RLPC_BAD_ARGUMENT for 2 bytes and more than 65536
-// vertices.
+// vertices. Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_indices(rlpc_decoder* decoder, void* indices,
                                           size_t num_bytes, uint32_t index_bytes);
 // Copies the index in the whole mesh of each vertex of a coarse mesh, ascending. num_values:
-// num_vertices. Returns RLPC_BAD_ARGUMENT without coarse_layers.
+// num_vertices. Returns RLPC_BAD_ARGUMENT without coarse_layers. Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_coarse_vertices(rlpc_decoder* decoder, uint32_t* indices,
                                                   size_t num_values);
 // Returns the latest metadata so far, JSON text, or "" if there was none. Valid until the next
 // call on the handle.
 RLPC_API const char* rlpc_decoder_metadata(const rlpc_decoder* decoder);
 // Returns the number of ancillary units that were ignored so far (skip_damaged_units).
+// Since 1.2.
 RLPC_API uint32_t rlpc_decoder_num_damaged_units(const rlpc_decoder* decoder);
-// Returns the number of clips in the latest clip table so far.
+// Returns the number of clips in the latest clip table so far. Since 1.2.
 RLPC_API uint32_t rlpc_decoder_num_clips(const rlpc_decoder* decoder);
 // Returns a clip as the latest clip table defines it; in an open-ended stream it may end after
 // the last frame. Its name is valid until the next call that decodes or seeks, and ends at the
-// first zero byte. index: below the number of clips, otherwise RLPC_BAD_ARGUMENT.
+// first zero byte. index: below the number of clips, otherwise RLPC_BAD_ARGUMENT. Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_clip(rlpc_decoder* decoder, uint32_t index, rlpc_clip* clip);
 // Finds the first clip with a name. Its name is valid as that of rlpc_decoder_clip. Returns
-// RLPC_BAD_ARGUMENT if no clip has the name.
+// RLPC_BAD_ARGUMENT if no clip has the name. Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_find_clip(rlpc_decoder* decoder, const char* name,
                                             rlpc_clip* clip);
 
@@ -216,7 +230,7 @@ RLPC_API rlpc_status rlpc_decoder_find_clip(rlpc_decoder* decoder, const char* n
 //   clip     from rlpc_decoder_clip, or any other with a first_frame below num_frames
 //            (otherwise RLPC_BAD_ARGUMENT), ended with the stream; null: the whole sequence
 //
-// Computes the seconds from the first frame of a clip to its last.
+// Computes the seconds from the first frame of a clip to its last. Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_duration(rlpc_decoder* decoder, const rlpc_clip* clip,
                                            double* seconds);
 // Computes the index in the sequence of the frame that is nearest to a time of a clip.
@@ -224,16 +238,18 @@ RLPC_API rlpc_status rlpc_decoder_duration(rlpc_decoder* decoder, const rlpc_cli
 //   repeats  1: the clip restarts at its end; 0: its last pose is held
 //   place    null, or receives the index with a fraction, for interpolation: 12.25 is a quarter
 //            of the way from frame 12 to frame 13
+// Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_frame_at(rlpc_decoder* decoder, const rlpc_clip* clip,
                                            double seconds, uint32_t repeats, uint32_t* frame,
                                            double* place);
 
 // Finds the GOF of a frame below num_frames (otherwise RLPC_BAD_ARGUMENT). Reads headers of
 // units, or the GOF index if the stream has one, and decodes nothing. Returns a stream error if
-// they are damaged.
+// they are damaged. Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_gof_of(rlpc_decoder* decoder, uint32_t frame, rlpc_gof* gof);
-// Finds all GOFs in the same way: copies the first max_gofs of them to gofs, which may be null
-// if max_gofs is 0, and sets num_gofs to their total number.
+// Finds all GOFs, like rlpc_decoder_gof_of: copies the first max_gofs of them to gofs, which
+// may be null if max_gofs is 0, and sets num_gofs to their total number. Returns a stream error
+// if headers or the index are damaged. Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_gofs(rlpc_decoder* decoder, rlpc_gof* gofs, size_t max_gofs,
                                        uint32_t* num_gofs);
 
@@ -246,36 +262,36 @@ RLPC_API rlpc_status rlpc_decoder_gofs(rlpc_decoder* decoder, rlpc_gof* gofs, si
 // nor prefetched also takes parsing and preparing that GOF. In an inter GOF (High profile), a
 // frame that is not cached also takes decoding the frames that it is predicted from: one or a
 // few in playback order, otherwise up to the whole GOF. Memory: allocates one frame, and
-// another for normals, once; and that of a GOF on entering it.
+// another for normals, once; and that of a GOF on entering it. Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_frame(rlpc_decoder* decoder, uint32_t frame,
                                         const rlpc_frame_output* output);
-// Decodes the next frame in the same way. Returns RLPC_END after the last one, once the rest of
-// the stream has been checked.
+// Decodes the next frame, like rlpc_decoder_frame. Returns RLPC_END after the last one, once
+// the rest of the stream has been checked, or a stream error. Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_next(rlpc_decoder* decoder, const rlpc_frame_output* output);
 // Prepares the GOF of a frame below num_frames (otherwise RLPC_BAD_ARGUMENT). With several
 // threads, reads the units of the GOF and returns; playing forward or backward prefetches
 // without calls. With one thread, takes the time that its first frame would, and does nothing
 // if the GOF may not be cached (max_cached_bytes). Returns a stream error if the GOF cannot be
-// found; errors inside it are reported with its frames.
+// found; errors inside it are reported with its frames. Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_prefetch(rlpc_decoder* decoder, uint32_t frame);
 // Computes the bounding box of the last frame that _frame, _next, _next_floats or _blend
-// decoded, in the units of the encoder's input. Reads all vertices; allocates nothing. Returns
-// RLPC_BAD_ARGUMENT if no frame has been decoded.
+// decoded, in the units of the encoder's input: smallest and largest x, y and z. Reads all
+// vertices; allocates nothing. Returns RLPC_BAD_ARGUMENT if no frame has been decoded.
+// Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_bounds(rlpc_decoder* decoder, float least[3], float most[3]);
 // Reports the memory in use for frames, estimated for the worst contents: usually several times
 // what is allocated. Excludes attributes, drawn vertices and the asset, which take as much as
-// their functions return. struct_size: sizeof *memory.
+// their functions return. struct_size: sizeof *memory. Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_memory(rlpc_decoder* decoder, rlpc_memory* memory,
                                          size_t struct_size);
 
-// Decodes the next frame: x, y and z of each vertex. num_values: 3 * num_vertices. Returns
-// RLPC_END after the last frame, once the rest of the stream has been checked, or a stream
-// error.
-//
-// _positions: exact, in grid units, equal for all decoders. _floats: in the units of the
-// encoder's input.
+// Decodes the next frame: x, y and z of each vertex in grid units, exact and equal for all
+// decoders. num_values: 3 * num_vertices. Returns RLPC_END after the last frame, once the rest
+// of the stream has been checked, or a stream error. Time: as for rlpc_decoder_frame.
 RLPC_API rlpc_status rlpc_decoder_next_positions(rlpc_decoder* decoder, int32_t* positions,
                                                  size_t num_values);
+// Decodes the next frame, like rlpc_decoder_next_positions, in the units of the encoder's
+// input. num_values: 3 * num_vertices. Returns the same.
 RLPC_API rlpc_status rlpc_decoder_next_floats(rlpc_decoder* decoder, float* xyz,
                                               size_t num_values);
 // Makes `frame`, below num_frames (otherwise RLPC_BAD_ARGUMENT), the next one. GOFs in between

@@ -3,11 +3,16 @@
 //
 //   rlpc_frame_output output;
 //   rlpc_frame_output_init(&output, sizeof output);
-//   output.positions = (rlpc_channel){vertices, vertices_bytes, sizeof(vertex),
-//   RLPC_FORMAT_FLOAT}; const size_t normal_bytes = vertices_bytes - offsetof(vertex, normal);
-//   output.normals =
-//       (rlpc_channel){&vertices->normal, normal_bytes, sizeof(vertex), RLPC_FORMAT_INT8};
+//   output.positions.data = &vertices->position;  // of the first vertex
+//   output.positions.format = RLPC_FORMAT_FLOAT;
+//   output.positions.num_bytes = vertices_bytes - offsetof(vertex, position);
+//   output.normals.data = &vertices->normal;
+//   output.normals.format = RLPC_FORMAT_INT8;
+//   output.normals.num_bytes = vertices_bytes - offsetof(vertex, normal);
+//   output.positions.stride = output.normals.stride = sizeof(vertex);
 //   rlpc_decoder_frame(decoder, 17, &output);
+//
+// Versions and structures: rlpc_status.h. Everything in this header is there since 1.2.
 #pragma once
 
 #include <stddef.h>
@@ -20,6 +25,7 @@ extern "C" {
 #endif
 
 // NOLINTBEGIN(readability-identifier-naming): C naming.
+// Formats of values. Since 1.2.
 typedef enum rlpc_format {
   RLPC_FORMAT_INT32 = 1,  // positions: grid units, exact
   RLPC_FORMAT_FLOAT = 2,  // 32 bits, in the units of the encoder's input
@@ -28,13 +34,14 @@ typedef enum rlpc_format {
   RLPC_FORMAT_INT8 = 5,   // normals: 127 times the vector
 } rlpc_format;
 
+// Weights of the triangles around a vertex in its normal. Since 1.2.
 typedef enum rlpc_normal_weight {
-  RLPC_NORMAL_WEIGHT_AREA = 0,  // area of each triangle around a vertex
-  RLPC_NORMAL_WEIGHT_ANGLE =
-      1,  // angle of each triangle at the vertex; independent of triangulation
+  RLPC_NORMAL_WEIGHT_AREA = 0,   // the area of the triangle
+  RLPC_NORMAL_WEIGHT_ANGLE = 1,  // its angle at the vertex; independent of triangulation
 } rlpc_normal_weight;
 
-// Three values per vertex, one vertex every stride bytes; bytes in between are not written.
+// Buffer of the caller for three values per vertex, one vertex every stride bytes; bytes in
+// between are not written. Since 1.2.
 typedef struct rlpc_channel {
   void* data;        // null: no output; values need no alignment
   size_t num_bytes;  // buffer size from data on, at least up to the last value
@@ -42,6 +49,7 @@ typedef struct rlpc_channel {
   uint32_t format;   // rlpc_format
 } rlpc_channel;
 
+// Form of a frame. rlpc_frame_output_init sets the defaults. Since 1.2.
 typedef struct rlpc_frame_output {
   size_t struct_size;      // set by rlpc_frame_output_init
   rlpc_channel positions;  // RLPC_FORMAT_INT32, _FLOAT, _HALF or _INT16
@@ -63,11 +71,12 @@ typedef struct rlpc_frame_output {
 } rlpc_frame_output;
 // NOLINTEND(readability-identifier-naming)
 
-// Sets all members to their defaults: no output. struct_size: sizeof *output.
+// Sets all members to their defaults: no output. struct_size: sizeof *output. Since 1.2.
 RLPC_API void rlpc_frame_output_init(rlpc_frame_output* output, size_t struct_size);
 
 struct rlpc_decoder;
-// Returns the scales and offsets with which 16 bits cover every position of the grid.
+// Computes the scales and offsets with which 16 bits cover every position of the grid, for x, y
+// and z, in units. Since 1.2.
 RLPC_API rlpc_status rlpc_decoder_int16_scale(struct rlpc_decoder* decoder, double scale[3],
                                               double offset[3]);
 

@@ -2,11 +2,18 @@
 //
 //   rlpc_frame_format format;
 //   rlpc_frame_format_init(&format, sizeof format);
-//   format.num_vertices = ...;  // and the other members
+//   format.num_vertices = num_vertices;
+//   format.num_triangles = num_triangles;
+//   format.indices = indices;
+//   format.num_frames = num_frames;
+//   for (int axis = 0; axis < 3; ++axis) {
+//     format.box_min[axis] = -10;  // contains all frames
+//     format.box_max[axis] = 10;
+//   }
 //   rlpc_encoder* encoder;
 //   rlpc_status status = rlpc_encoder_create(&format, NULL, write_bytes, file, &encoder);
-//   for (uint32_t f = 0; status == RLPC_OK && f < format.num_frames; ++f)
-//     status = rlpc_encoder_add_frame(encoder, frame(f), 3 * format.num_vertices);
+//   for (uint32_t f = 0; status == RLPC_OK && f < num_frames; ++f)
+//     status = rlpc_encoder_add_frame(encoder, frame(f), 3 * (size_t)num_vertices);
 //   if (status == RLPC_OK) status = rlpc_encoder_finish(encoder, NULL, 0);
 //   if (status != RLPC_OK) fprintf(stderr, "%s\n", rlpc_encoder_error_text(encoder));
 //   rlpc_encoder_close(encoder);
@@ -17,8 +24,9 @@
 // stream does (see frame_encoder.h). In the High profile, several GOFs are held and encoded
 // together (max_held_frames). The same frames and options give the same bytes on every
 // machine. A decoder verifies the stream while it is written: a wrong stream is a bug of the
-// encoder, RLPC_INTERNAL_ERROR. No function throws or aborts. A handle may be used by one
-// thread at a time; different handles are independent.
+// encoder, RLPC_INTERNAL_ERROR. No function throws or aborts. Errors name members of the
+// structures in quotes: 'gof_frames'. rlpc_status.h describes versions, structures and the use
+// of handles by threads.
 //
 // Memory: frames and reports are in buffers of the caller, and output is passed to a callback.
 // Only the handle must be closed; it can be in memory of the caller (place). The analysis uses
@@ -41,6 +49,7 @@ extern "C" {
 // Handle of an encoder.
 typedef struct rlpc_encoder rlpc_encoder;
 
+// Maximum number of temporal layers. Since 1.2.
 #define RLPC_MAX_TEMPORAL_LAYERS 8
 
 // Properties of the sequence that must be known before the first frame.
@@ -58,8 +67,8 @@ typedef struct rlpc_frame_format {
   float box_max[3];
 } rlpc_frame_format;
 
-// Profile of the stream. RLPC_PROFILE_HIGH is version 1.2, which is not released: its streams
-// may change.
+// Profile of the stream. RLPC_PROFILE_HIGH is version 1.2 of the format, which is not released:
+// its streams may change. Names with RLPC_PROFILE_: since 1.2.
 typedef enum rlpc_profile {
   RLPC_PROFILE_BASELINE = 0,
   RLPC_PROFILE_MAIN = 1,
@@ -69,7 +78,7 @@ typedef enum rlpc_profile {
   RLPC_MAIN = RLPC_PROFILE_MAIN,
 } rlpc_profile;
 
-// Search effort; does not affect decoders.
+// Search effort; does not affect decoders. Names with RLPC_PRESET_: since 1.2.
 typedef enum rlpc_preset {
   RLPC_PRESET_FAST = 0,
   RLPC_PRESET_MEDIUM = 1,
@@ -86,11 +95,13 @@ typedef enum rlpc_target {
   RLPC_TARGET_BPVF = 2,       // bits per vertex and frame
   RLPC_TARGET_MAX_ERROR = 3,  // maximum distance of a vertex from its original, in units
   // High profile: positions without loss on a grid of this many bits, 2 to 24, of the box.
+  // Since 1.2.
   RLPC_TARGET_LOSSLESS = 4,
 } rlpc_target;
 
 // Kind of GOFs. RLPC_GOF_KIND_AUTO: for each GOF, the cheapest that the profile has;
 // RLPC_GOF_KIND_SKINNED: skinned GOFs, Main and High; RLPC_GOF_KIND_INTER: inter GOFs, High.
+// Since 1.2.
 typedef enum rlpc_gof_kind {
   RLPC_GOF_KIND_AUTO = 0,
   RLPC_GOF_KIND_CLUSTER = 1,
@@ -98,7 +109,8 @@ typedef enum rlpc_gof_kind {
   RLPC_GOF_KIND_INTER = 3,
 } rlpc_gof_kind;
 
-// Hashes of decoded positions in the stream: none, one per GOF, one per frame.
+// Hashes of decoded positions in the stream: none, one per GOF, one per frame. Names with
+// RLPC_HASH_MODE_: since 1.2.
 typedef enum rlpc_hash_mode {
   RLPC_HASH_MODE_NONE = 0,
   RLPC_HASH_MODE_GOF = 1,
@@ -131,23 +143,25 @@ typedef struct rlpc_encode_options {
   // handle is closed. Null: allocated by the library.
   void* place;
   size_t place_bytes;
-  // Encodings estimated to need more fail with RLPC_LIMIT_EXCEEDED; default 32 GiB.
+  // Encodings estimated to need more fail with RLPC_LIMIT_EXCEEDED; default 32 GiB. Since 1.2.
   uint64_t max_memory_bytes;
-  uint32_t threads;   // 1 to 256, otherwise RLPC_BAD_ARGUMENT; the stream does not depend on it
-  uint32_t reserved;  // padding in earlier versions; not read
+  // 1 to 256, otherwise RLPC_BAD_ARGUMENT; the stream does not depend on it. Since 1.2.
+  uint32_t threads;
+  uint32_t reserved;  // padding, not read; since 1.2
   // High profile: temporal layers, 1 to RLPC_MAX_TEMPORAL_LAYERS; the stream can be cut to
-  // fewer. Default 1.
+  // fewer. Default 1. Since 1.2.
   uint32_t temporal_layers;
   // High profile: maximum number of frames that are held and encoded together, but at least one
-  // GOF; 0: as many as can share a shared rig, up to 2^23 positions.
+  // GOF; 0: as many as can share a shared rig, up to 2^23 positions. Since 1.2.
   uint32_t max_held_frames;
-  uint32_t gof_kind;  // default RLPC_GOF_KIND_AUTO
+  uint32_t gof_kind;  // default RLPC_GOF_KIND_AUTO; since 1.2
   // High profile, 1: each frame is coded when it is added, in inter GOFs; a KG error is then
-  // met approximately. Default 0. Not with RLPC_TARGET_BPVF.
+  // met approximately. Default 0. Not with RLPC_TARGET_BPVF. Since 1.2.
   uint32_t low_delay;
   // Named parts of the sequence, num_clips of them, up to RLPC_MAX_CLIPS; copied. Default none.
+  // Since 1.2.
   const rlpc_clip* clips;
-  size_t num_clips;
+  size_t num_clips;  // since 1.2
 } rlpc_encode_options;
 
 // Report on a finished stream.
@@ -162,9 +176,9 @@ typedef struct rlpc_encode_report {
   uint32_t level;
   uint32_t target_met;  // 1: met in every GOF
   // Size and KG error of the stream when cut to its first 1, 2, ... temporal layers, up to one
-  // fewer than it has; further values are 0.
+  // fewer than it has; further values are 0. Since 1.2.
   uint64_t temporal_cut_bytes[RLPC_MAX_TEMPORAL_LAYERS - 1];
-  double temporal_cut_kg_error_percent[RLPC_MAX_TEMPORAL_LAYERS - 1];
+  double temporal_cut_kg_error_percent[RLPC_MAX_TEMPORAL_LAYERS - 1];  // since 1.2
 } rlpc_encode_report;
 
 // Receives the next bytes of the stream. Returns 0 on success; other values stop the encoder

@@ -28,6 +28,8 @@ PAGES = ("rlpcenc", "rlpcdec", "rlpcinfo", "rlpccmp", "rlpcval")
 LIBRARIES = ("rlpc", "rlpc_static", "rlpcdec", "rlpcdec_static")
 # Program: its source, the module of pkg-config, the standard.
 PROGRAMS = {
+    "examples_c": ("examples.c", "rlpc", "c99"),
+    "examples_cpp": ("examples.cpp", "rlpc-encoder", "c++20"),
     **{f"decode_c_{library}": ("decode.c", library, "c99") for library in LIBRARIES},
     **{f"decode_cpp11_{library}": ("decode_cpp11.cpp", library, "c++11") for library in LIBRARIES},
     "encode_c_rlpc": ("encode.c", "rlpc", "c99"),
@@ -137,6 +139,14 @@ def try_examples(folder, clip, work):
             f"draw writes {count}")
 
 
+def try_header_examples(folder, clip, work):
+    """Runs the examples in the comments of the public headers."""
+    shutil.copy(clip.stream, work / "dance.rlpc")
+    run((folder / "examples_c").resolve(), "triangle.rlpc", cwd=work)
+    run(clip.tools / "rlpcval", work / "triangle.rlpc")
+    run((folder / "examples_cpp").resolve(), CLIP, CLIP.with_suffix(".pc2"), cwd=work)
+
+
 def try_encoders(folder, clip, work):
     out = work / "encoded.rlpc"
     run(folder / "encode_cpp", CLIP, CLIP.with_suffix(".pc2"), out)
@@ -207,6 +217,7 @@ def main():
             try_decoders(programs, clip, work)
             try_encoders(programs, clip, work)
             try_examples(programs, clip, work)
+            try_header_examples(programs, clip, work)
             if shutil.which("pkg-config"):
                 try_decoders(with_pkg_config(args, prefix, work / "pkg-config"), clip, work)
             else:

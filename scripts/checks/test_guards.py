@@ -13,6 +13,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
+import check_api
 import check_attributes
 import check_clauses
 import check_constants
@@ -27,7 +28,8 @@ import rooms
 
 ROOT = cpp_source.repository_root()
 COPIED = (*cpp_source.LAYERS, "spec")
-COPIED_FILES = ("scripts/cmake/install.cmake",)
+COPIED_FILES = ("scripts/cmake/install.cmake", "scripts/checks/consumer/examples.c",
+                "scripts/checks/consumer/examples.cpp")
 
 
 _COPY = tempfile.TemporaryDirectory()
@@ -38,7 +40,7 @@ def setUpModule():
     for name in COPIED:
         shutil.copytree(ROOT / name, root / name)
     for name in COPIED_FILES:
-        (root / name).parent.mkdir(parents=True)
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, root / name)
     (root / "streams").symlink_to(ROOT / "streams")
 
@@ -404,6 +406,48 @@ class Settings(RealTree):
         with self.without("encoder/programs"):
             self.assertTrue(any("has no entries" in complaint
                                 for complaint in check_settings.check(self.root)[0]))
+
+
+class Api(RealTree):
+    HEADER = "decoder/c_api/rlpc_c_decoder.h"
+
+    def test_the_tree_is_clean(self):
+        self.assertEqual(check_api.check(self.root)[0], [])
+
+    def test_examples_are_compiled(self):
+        for name, words in ((self.HEADER, "has no such example"),
+                            ("encoder/frame_encoder.h", "has no such example"),
+                            ("scripts/checks/consumer/examples.c", "has no such example")):
+            with self.subTest(name=name), self.planted(name, lambda text: text.replace(
+                    "rlpc_decoder_close(decoder);", "rlpc_decoder_free(decoder);", 1).replace(
+                        "encoder->finish();", "encoder->end();", 1)):
+                found = check_api.check(self.root)[0]
+            self.assertEqual(len(found), 2, found)  # of the header, and of the program
+            for complaint in found:
+                self.assertIn(words, complaint)
+
+    def test_an_example_of_its_own_is_found(self):
+        self.complaint(check_api.check, "decoder/describe_error.h",
+                       lambda text: "// Usage:\n//   print(describe_error(error));\n" + text,
+                       "decoder/describe_error.h", "has no such example")
+
+    def test_new_names_state_their_version(self):
+        function = "RLPC_API void rlpc_new(void);\n"
+        for added, words in (("\n// Does it.\n" + function, "does not say since which version"),
+                             ("\n// Does it. Since 1.2.\n" + function, None)):
+            with self.planted(self.HEADER, lambda text, added=added: text + added):
+                found = check_api.check(self.root)[0]
+            self.assertEqual(len(found), 1 if words else 0, found)
+            self.assertIn(words or "", "".join(found))
+        self.complaint(check_api.check, self.HEADER, lambda text: text.replace(
+            "  uint32_t max_layers;\n", "  uint32_t max_layers;\n  uint32_t extra[2];\n"),
+            "rlpc_decode_options.extra does not say since")
+
+    def test_names_of_the_first_version_stay(self):
+        with self.planted(self.HEADER,
+                          lambda text: text.replace("rlpc_decoder_seek(", "rlpc_decoder_go(")):
+            found = check_api.check(self.root)[0]
+        self.assertTrue(any("rlpc_decoder_seek is declared nowhere" in text for text in found))
 
 
 class Attributes(RealTree):
