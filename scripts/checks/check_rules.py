@@ -10,7 +10,7 @@ Every rule is checked by rlpcval: its id is a string in the code of the validato
 that the validator includes, or in the readers of bits and sections that these share.
 
 Every rule is broken by a stream of some version in streams/, or by one that a decoder may refuse;
-and sidecars name no other rules.
+and sidecars name no other rules. What decoders may refuse or not is in spec/permissive.md.
 
   --write    update spec/rules.json
 """
@@ -140,6 +140,23 @@ def stream_complaints(root, found):
     return complaints, len(without)
 
 
+def not_left_open(root):
+    """Complaints about rules that decoders need not check, as some streams state, but that the
+    page on differences between decoders does not name."""
+    page = root / "spec" / "permissive.md"
+    text = cpp_source.read(page) if page.is_file() else ""
+    named = set(re.findall(r"R-[A-Z]{2,4}-\d{2}", text))
+    for area, first, last in re.findall(r"(R-[A-Z]{2,4}-)(\d{2})\s+to\s+\1(\d{2})", text):
+        named |= {f"{area}{number:02}" for number in range(int(first), int(last) + 1)}
+    places = {}
+    for path in sorted((root / "streams").glob("v*/either/*/*.json")):
+        sidecar = json.loads(cpp_source.read(path))
+        for rule in () if sidecar.get("superseded_by") else sidecar["rules"]:
+            places.setdefault(rule, path.stem)
+    return [f"spec/permissive.md: {rule} is left open by {place}, but not named here"
+            for rule, place in sorted(places.items()) if rule not in named]
+
+
 def check(root):
     found, complaints = rules(root)
     if not (root / "spec").is_dir():
@@ -152,7 +169,7 @@ def check(root):
     complaints += [f"{rule} has no check in rlpcval: conformance/rlpcval/validator*.cpp"
                    for rule in missing]
     about_streams, without = stream_complaints(root, found)
-    complaints += about_streams
+    complaints += [*about_streams, *not_left_open(root)]
     return complaints, (f"{len(found)} rules, of which {len(unchecked)} are not checked by the "
                         f"decoding process ({', '.join(unchecked)}), and {len(missing)} not by "
                         f"rlpcval; rules without a stream that breaks them: {without}")

@@ -285,7 +285,8 @@ class Rules(TreeTest):
             return json.dumps({"rules": ids, **more})
 
         tree = {**self.tree(self.TEXT), "streams/v1.0/accept/A/A-0001a.json": sidecar("R-ABC-02"),
-                "streams/v1.0/reject/A/A-0001x1.json": sidecar("R-ABC-01")}
+                "streams/v1.0/reject/A/A-0001x1.json": sidecar("R-ABC-01"),
+                "spec/permissive.md": "R-ABC-01 to R-ABC-09 are left open.\n"}
         self.assert_one(check_rules.check, tree, "streams/: no stream breaks R-ABC-02")
         either = "streams/v1.0/either/A/A-0001x2.json"
         self.assert_clean(check_rules.check, {**tree, either: sidecar("R-ABC-02")})
@@ -294,6 +295,9 @@ class Rules(TreeTest):
                         "no stream breaks R-ABC-02")
         self.assert_one(check_rules.check, {**tree, either: sidecar("R-ABC-02", "R-ABC-09")},
                         "names R-ABC-09, which spec/ does not define")
+        self.assert_one(check_rules.check,
+                        {**tree, either: sidecar("R-ABC-02"), "spec/permissive.md": "R-ABC-01\n"},
+                        "spec/permissive.md: R-ABC-02 is left open by A-0001x2")
 
     def test_sentence_without_rule(self):
         self.assert_one(check_rules.check,

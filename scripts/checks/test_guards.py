@@ -492,6 +492,12 @@ class Specification(RealTree):
         self.assertIn("syntax element first_frame is read by no parser", found[0])
         self.assertIn("frame is in no syntax table", found[1])
 
+    def test_rules_that_are_left_open_are_on_the_page(self):
+        for old, rule in (("R-AST-02", "R-AST-02"), ("R-ATT-01 to R-ATT-09", "R-ATT-05")):
+            with self.planted("spec/permissive.md", lambda text, old=old: text.replace(old, "")):
+                found = check_rules.check(self.root)[0]
+            self.assertTrue(any(f"{rule} is left open by" in text for text in found), found)
+
     def test_a_rule_without_stream(self):
         with self.planted("spec/07-semantics.md", lambda text: text + (
                 "\nIt is a requirement of bitstream conformance that the sky is blue.\n"
