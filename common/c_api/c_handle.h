@@ -109,10 +109,10 @@ void give_struct(const T& ours, T* theirs, std::size_t struct_size) {
 // does not know are set.
 template <class T>
 bool take_struct(const T* theirs, T& ours) {
-  constexpr std::size_t kMostBytes = 4096;
+  constexpr std::size_t kMaxBytes = 4096;
   if (theirs == nullptr) return true;
   const std::size_t size = theirs->struct_size;
-  if (size < sizeof(std::size_t) || size > kMostBytes) return false;
+  if (size < sizeof(std::size_t) || size > kMaxBytes) return false;
   const auto* bytes = reinterpret_cast<const unsigned char*>(theirs);
   if (size > sizeof(T) && std::any_of(bytes + sizeof(T), bytes + size,
                                       [](unsigned char byte) { return byte != 0; })) {

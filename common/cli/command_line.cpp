@@ -97,12 +97,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 // Returns the option that was probably meant; "" if none is similar.
 std::string similar_option(const CLI::App& app, const std::string& word) {
   std::string nearest;
-  std::size_t least = 3;
+  std::size_t min_distance = 3;
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& name : option->get_lnames()) {
       const std::size_t distance = edit_distance(word, "--" + name);
-      if (distance >= least) continue;
-      least = distance;
+      if (distance >= min_distance) continue;
+      min_distance = distance;
       nearest = "--" + name;
     }
   }
@@ -139,8 +139,8 @@ std::string surplus_text(const CLI::App& app, const std::vector<std::string>& wo
     return "unknown option " + word +
            (similar.empty() ? "" : "; did you mean " + similar + "?");
   }
-  std::string of_caches = point_cache_advice(app);
-  if (!of_caches.empty()) return of_caches;
+  std::string cache_advice = point_cache_advice(app);
+  if (!cache_advice.empty()) return cache_advice;
   const bool has_points = app.get_option_no_throw("--points") != nullptr;
   return "unexpected argument" + std::string(words.size() == 1 ? " " : "s ") +
          CLI::detail::join(words, " ") +

@@ -34,11 +34,11 @@ inline double exact_place(double place) {
 // num_frames - 1, its last; with a fraction between frames. seconds: not a NaN; negative: 0.
 inline double clip_place(FrameRate frame_rate, std::uint32_t num_frames, double seconds,
                          bool repeats) {
-  constexpr double kMost = 0x1p53;  // where doubles have no fraction left
+  constexpr double kMax = 0x1p53;  // where doubles have no fraction left
   const double last = static_cast<double>(num_frames) - 1.0;
   double place = seconds * frame_rate.numerator / frame_rate.denominator;
   if (!(place > 0.0) || last == 0.0) return 0.0;
-  if (place > kMost) place = kMost;
+  if (place > kMax) place = kMax;
   if (!repeats) return place < last ? exact_place(place) : last;
   // Not fmod: the decoder's library needs no mathematical functions.
   place -= last * static_cast<double>(static_cast<std::uint64_t>(place / last));

@@ -27,9 +27,9 @@ std::optional<Character> first_character(std::string_view text) {
     if ((byte(i) & 0xC0) != 0x80) return std::nullopt;
     code = code << 6 | (byte(i) & 0x3F);
   }
-  constexpr std::array<std::uint32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
+  constexpr std::array<std::uint32_t, 5> kMinCode{0, 0, 0x80, 0x800, 0x10000};
   const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
-  if (code < kLeast[bytes] || code > 0x10FFFF || surrogate) return std::nullopt;
+  if (code < kMinCode[bytes] || code > 0x10FFFF || surrogate) return std::nullopt;
   return Character{code, bytes};
 }
 
@@ -71,19 +71,19 @@ std::string size_text(std::uint64_t bytes) {
   };
   constexpr std::array<Units, 2> kUnits{
       {{1024, {" KiB", " MiB", " GiB"}}, {1000, {" kB", " MB", " GB"}}}};
-  std::uint64_t least = bytes;
+  std::uint64_t min = bytes;
   const char* unit = " bytes";
   for (const Units& units : kUnits) {
     std::uint64_t count = bytes;
     for (const char* name : units.names) {
       if (count == 0 || count % units.factor != 0) break;
       count /= units.factor;
-      if (count >= least) continue;
-      least = count;
+      if (count >= min) continue;
+      min = count;
       unit = name;
     }
   }
-  return std::to_string(least) + unit;
+  return std::to_string(min) + unit;
 }
 
 std::string count_text(std::uint64_t count, std::string_view one, std::string_view many) {

@@ -32,9 +32,9 @@ std::size_t longest_name(const fs::path& folder) {
 std::string temporary_name(const fs::path& path, int attempt) {
   const std::string end = ".partial" + (attempt == 0 ? "" : std::to_string(attempt));
   std::string name = path.filename().string();
-  const std::size_t most = longest_name(path.parent_path()) - end.size();
-  if (name.size() > most) {
-    std::size_t size = most;
+  const std::size_t max = longest_name(path.parent_path()) - end.size();
+  if (name.size() > max) {
+    std::size_t size = max;
     while (size > 0 && (name[size] & 0xC0) == 0x80) --size;  // whole characters of UTF-8
     name.resize(size);
   }
@@ -43,9 +43,9 @@ std::string temporary_name(const fs::path& path, int attempt) {
 
 // Resolves symbolic links, whether or not the target exists.
 OutputResult<std::string> end_of_links(const std::string& path) {
-  constexpr int kMostLinks = 40;
+  constexpr int kMaxLinks = 40;
   fs::path at = path;
-  for (int links = 0; links < kMostLinks; ++links) {
+  for (int links = 0; links < kMaxLinks; ++links) {
     std::error_code ec;
     if (!fs::is_symlink(at, ec)) return at.string();
     const fs::path to = fs::read_symlink(at, ec);

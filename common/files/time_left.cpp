@@ -8,10 +8,10 @@ namespace rlpc {
 namespace {
 
 constexpr double kInterval = 1.0;  // seconds between samples
-constexpr double kLeastSeconds = 4.0;
-constexpr double kLeastFraction = 0.01;
-constexpr double kRecent = 0.25;    // recent part of the time that has passed
-constexpr double kMostRatio = 1.5;  // ratio of the estimates from recent and total pace
+constexpr double kMinSeconds = 4.0;
+constexpr double kMinFraction = 0.01;
+constexpr double kRecent = 0.25;   // recent part of the time that has passed
+constexpr double kMaxRatio = 1.5;  // ratio of the estimates from recent and total pace
 
 std::string left_text(double seconds) {
   const auto rounded = [&](long step) {
@@ -33,7 +33,7 @@ std::string left_text(double seconds) {
 
 std::optional<double> TimeLeft::update(double seconds, double fraction) {
   if (seconds >= samples_.back().seconds + kInterval) samples_.push_back({seconds, fraction});
-  if (seconds < kLeastSeconds || fraction < kLeastFraction) return std::nullopt;
+  if (seconds < kMinSeconds || fraction < kMinFraction) return std::nullopt;
   const double recently = seconds - std::max(kRecent * seconds, kInterval);
   const auto after =
       std::upper_bound(samples_.begin(), samples_.end(), recently,
@@ -45,7 +45,7 @@ std::optional<double> TimeLeft::update(double seconds, double fraction) {
   const double usual = seconds * (1.0 - fraction) / fraction;
   const double recent =
       (seconds - before.seconds) * (1.0 - fraction) / (fraction - before.fraction);
-  if (std::max(usual, recent) > kMostRatio * std::min(usual, recent)) return std::nullopt;
+  if (std::max(usual, recent) > kMaxRatio * std::min(usual, recent)) return std::nullopt;
   return (usual + recent) / 2;
 }
 

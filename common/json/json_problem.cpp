@@ -8,9 +8,9 @@ namespace {
 
 // Returns a bound of the time for members of objects: about a second, and more for long texts.
 std::uint64_t max_comparisons(std::string_view text) {
-  constexpr std::uint64_t kOfAnyText = 100'000'000;
-  constexpr std::uint64_t kOfByte = 64;
-  return kOfAnyText + kOfByte * text.size();
+  constexpr std::uint64_t kTextCost = 100'000'000;
+  constexpr std::uint64_t kByteCost = 64;
+  return kTextCost + kByteCost * text.size();
 }
 
 }  // namespace

@@ -242,13 +242,13 @@ std::optional<JsonFault> measure_json(std::string_view text, JsonShape& shape) {
 // capacity may be double, and in a copy; a printed text is also a string that doubles. Each
 // value can have a line of the text, and its brackets another.
 std::uint64_t json_tree_bytes(const JsonShape& shape, std::size_t text_bytes) {
-  constexpr std::uint64_t kOfElement = 64;
-  constexpr std::uint64_t kOfMember = 240;
-  constexpr std::uint64_t kOfBlock = 160;
-  constexpr std::uint64_t kOfLevel = 12;
-  constexpr std::uint64_t kOfByte = 12;
-  return kOfElement * shape.elements + kOfMember * shape.members + kOfBlock * shape.blocks +
-         kOfLevel * shape.levels + kOfByte * text_bytes;
+  constexpr std::uint64_t kElementBytes = 64;
+  constexpr std::uint64_t kMemberBytes = 240;
+  constexpr std::uint64_t kBlockBytes = 160;
+  constexpr std::uint64_t kLevelBytes = 12;
+  constexpr std::uint64_t kEscapedBytes = 12;
+  return kElementBytes * shape.elements + kMemberBytes * shape.members +
+         kBlockBytes * shape.blocks + kLevelBytes * shape.levels + kEscapedBytes * text_bytes;
 }
 
 }  // namespace rlpc

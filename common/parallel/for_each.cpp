@@ -31,7 +31,7 @@ class ThreadPool::Impl : public Owned {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  static thread_local Impl* of_thread;  // pool in use by the thread
+  static thread_local Impl* pool_of_thread;  // pool in use by the thread
   bool has_others() const { return !others_.empty(); }
 
   void run(std::size_t count, const Pass& pass) {
@@ -67,11 +67,11 @@ class ThreadPool::Impl : public Owned {
     bool is_open() const { return next.load(std::memory_order_relaxed) < count; }
   };
 
-  // Returns the innermost open loop at least_depth or deeper.
-  Loop* innermost(std::size_t least_depth) const {
+  // Returns the innermost open loop at min_depth or deeper.
+  Loop* innermost(std::size_t min_depth) const {
     Loop* found = nullptr;
     for (Loop* const loop : loops_) {
-      if (loop->depth < least_depth || !loop->is_open()) continue;
+      if (loop->depth < min_depth || !loop->is_open()) continue;
       if (found == nullptr || loop->depth > found->depth) found = loop;
     }
     return found;
@@ -101,7 +101,7 @@ class ThreadPool::Impl : public Owned {
   }
 
   void help() {
-    of_thread = this;
+    pool_of_thread = this;
     std::unique_lock lock(mutex_);
     for (;;) {
       Loop* const loop = innermost(0);
@@ -149,18 +149,18 @@ class ThreadPool::Impl : public Owned {
   Vector<std::thread> others_;
 };
 
-thread_local ThreadPool::Impl* ThreadPool::Impl::of_thread = nullptr;
+thread_local ThreadPool::Impl* ThreadPool::Impl::pool_of_thread = nullptr;
 thread_local std::size_t ThreadPool::Impl::depth_of_thread = 0;
 
 ThreadPool::ThreadPool(std::uint32_t count) : impl_(std::make_unique<Impl>(count)) {}
 ThreadPool::~ThreadPool() = default;
 
 ThreadPool::Use::Use(ThreadPool& pool)
-    : before_(std::exchange(Impl::of_thread, pool.impl_.get())) {}
-ThreadPool::Use::~Use() { Impl::of_thread = before_; }
+    : before_(std::exchange(Impl::pool_of_thread, pool.impl_.get())) {}
+ThreadPool::Use::~Use() { Impl::pool_of_thread = before_; }
 
 void for_each(std::size_t count, const Pass& pass) {
-  ThreadPool::Impl* const pool = ThreadPool::Impl::of_thread;
+  ThreadPool::Impl* const pool = ThreadPool::Impl::pool_of_thread;
   if (pool == nullptr || count < 2 || !pool->has_others()) {
     for (std::size_t i = 0; i < count; ++i) pass(i);
   } else {

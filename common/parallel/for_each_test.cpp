@@ -47,11 +47,11 @@ TEST(ForEach, HasAtMostOnePassOfEachDepthPerThread) {
   constexpr std::uint32_t kThreads = 3;
   const Threads threads(kThreads);
   std::atomic<int> outer = 0;
-  std::atomic<int> most = 0;
+  std::atomic<int> max = 0;
   std::atomic<int> inner = 0;
   for_each(40, [&](std::size_t) {
     int now = ++outer;
-    for (int before = most; now > before && !most.compare_exchange_weak(before, now);) {
+    for (int before = max; now > before && !max.compare_exchange_weak(before, now);) {
     }
     for_each(5, [&](std::size_t) {
       for_each(3, [&](std::size_t) {
@@ -62,7 +62,7 @@ TEST(ForEach, HasAtMostOnePassOfEachDepthPerThread) {
     --outer;
   });
   EXPECT_EQ(inner, 40 * 5 * 3);
-  EXPECT_LE(most, static_cast<int>(kThreads));
+  EXPECT_LE(max, static_cast<int>(kThreads));
 }
 
 TEST(ForEach, RethrowsOnceNoPassRuns) {

@@ -228,12 +228,12 @@ class InterReconOfText {
     std::int64_t a = order_[place_].first;
     std::int64_t b = order_[place_].second;
     if (frame.reference) a = b = *frame.reference;
-    const List& of_a = decoded[static_cast<std::size_t>(a)];
-    const List& of_b = decoded[static_cast<std::size_t>(b)];
+    const List& values_a = decoded[static_cast<std::size_t>(a)];
+    const List& values_b = decoded[static_cast<std::size_t>(b)];
     for (std::size_t i = 0; i < size(); ++i) {
-      reference[i] = of_a[i];
+      reference[i] = values_a[i];
       if (a == b) continue;
-      reference[i] = div_round((b - f_) * of_a[i] + (f_ - a) * of_b[i], b - a);
+      reference[i] = div_round((b - f_) * values_a[i] + (f_ - a) * values_b[i], b - a);
     }
   }
 

@@ -52,9 +52,9 @@ struct PatchesOfText {
   }
 
   // MovePatches( f )
-  void move(const List& of_frame, std::uint32_t depth_of_frame, std::int64_t step,
+  void move(const List& frame_values, std::uint32_t depth_of_frame, std::int64_t step,
             const FramePatches& patches) {
-    reference = of_frame;
+    reference = frame_values;
     depth = depth_of_frame;
     modes.clear();
     centre.clear();

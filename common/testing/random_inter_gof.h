@@ -111,16 +111,17 @@ inline InterGof random_inter_gof(std::uint64_t seed, const OrderedMesh& mesh,
   const auto below = [&](std::uint32_t n) { return random() % n; };
   InterGof gof = random_frame_settings(mesh, num_frames, below);
   auto frames = std::make_shared<std::vector<InterFrame>>(num_frames);
-  std::vector<std::uint32_t> most(gof.pattern.temporal_layers,
-                                  static_cast<std::uint32_t>(gof.layer_group_size.size()));
-  const std::uint32_t most_bits = below(4) == 0 ? 28 : 6;
+  std::vector<std::uint32_t> max_groups(
+      gof.pattern.temporal_layers, static_cast<std::uint32_t>(gof.layer_group_size.size()));
+  const std::uint32_t max_bits = below(4) == 0 ? 28 : 6;
   const FrameOrder order(gof.pattern, num_frames);
   for (std::uint32_t place = 0; place < num_frames; ++place) {
     InterFrame& frame = (*frames)[order[place].frame];
     // At most as many layer groups as earlier frames of the same and lower temporal layers.
-    std::uint32_t& groups = most[gof.pattern.temporal_layer(order[place].depth)];
+    std::uint32_t& groups = max_groups[gof.pattern.temporal_layer(order[place].depth)];
     if (below(8) == 0) groups = below(groups + 1);
-    for (std::size_t t = 1; t < most.size(); ++t) most[t] = std::min(most[t], most[t - 1]);
+    for (std::size_t t = 1; t < max_groups.size(); ++t)
+      max_groups[t] = std::min(max_groups[t], max_groups[t - 1]);
     frame.layer_groups = groups;
     if (groups == 0) continue;
     if (place > 0 && gof.max_earlier_distance > 0 && below(4) == 0) {
@@ -141,7 +142,7 @@ inline InterGof random_inter_gof(std::uint64_t seed, const OrderedMesh& mesh,
       patch.mode = static_cast<PatchMode>(below(kPatchModes));
       for (std::int32_t& residual : patch.residual) {
         if (patch.mode == PatchMode::kNeighbours) break;
-        residual = static_cast<std::int32_t>(random() & ((1U << below(most_bits + 1)) - 1));
+        residual = static_cast<std::int32_t>(random() & ((1U << below(max_bits + 1)) - 1));
         if (below(2) == 0) residual = -residual;
       }
     }
@@ -152,7 +153,7 @@ inline InterGof random_inter_gof(std::uint64_t seed, const OrderedMesh& mesh,
       if (mode_of(frame.patches, gof.patch_of_vertex, v) == PatchMode::kAlone) continue;
       for (std::size_t c = 0; c < 3; ++c) {
         const auto magnitude =
-            static_cast<std::int32_t>(random() & ((1U << below(most_bits + 1)) - 1));
+            static_cast<std::int32_t>(random() & ((1U << below(max_bits + 1)) - 1));
         if (magnitude == 0) continue;
         frame.residual.set(3 * std::size_t{v} + c, below(2) == 0 ? magnitude : -magnitude);
       }

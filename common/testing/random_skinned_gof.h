@@ -61,11 +61,11 @@ class RandomSkinnedGof {
   }
   std::uint32_t below(std::uint32_t n) { return n == 0 ? 0 : random() % n; }
   bool coin() { return random() % 2 == 0; }
-  int between(int least, int most) {
+  int between(int min, int max) {
     const auto kind = random() % 6;
-    if (kind == 0) return least;
-    if (kind == 1) return most;
-    return least + static_cast<int>(below(static_cast<std::uint32_t>(most - least + 1)));
+    if (kind == 0) return min;
+    if (kind == 1) return max;
+    return min + static_cast<int>(below(static_cast<std::uint32_t>(max - min + 1)));
   }
   // Returns a residual within `bits` bits, but occasionally of any size.
   std::int32_t residual(int bits) {
@@ -143,8 +143,8 @@ class RandomSkinnedGof {
   void make_bone(std::uint32_t b) {
     Bone& bone = gof.bones[b];
     bone.parent = static_cast<std::int32_t>(below(b + 1)) - 1;
-    const int most = 1 << (header.position_bits + 4);
-    for (std::int32_t& x : bone.pivot) x = between(-most, most - 1);
+    const int max = 1 << (header.position_bits + 4);
+    for (std::int32_t& x : bone.pivot) x = between(-max, max - 1);
     bone.rotation_flag = coin();
     bone.origin_flag = coin();
     if (bone.rotation_flag) {
@@ -165,10 +165,10 @@ class RandomSkinnedGof {
   // without its trajectories.
   void drop_temporal_layers() {
     auto present = static_cast<std::uint32_t>(gof.num_temporal_layers) - 1;
-    for (const std::uint32_t of_group : gof.slice_layers) {
+    for (const std::uint32_t num_layers : gof.slice_layers) {
       const bool is_first = gof.temporal_layers.empty();
       if (random() % 4 == 0) present = below(present + 1);
-      if (!is_first && of_group == 0) present = 0;
+      if (!is_first && num_layers == 0) present = 0;
       gof.temporal_layers.push_back(present);
     }
     for (Bone& bone : gof.bones) {

@@ -98,7 +98,7 @@ struct SkinnedGofRecipe {
     if (track_levels.value_or(0) > 0) w.u(3, num_temporal_layers_minus1);
   }
 
-  void rig_header(BitWriter& w, bool of_high) const {
+  void rig_header(BitWriter& w, bool high_profile) const {
     w.ue(static_cast<std::uint32_t>(bones.size()) - 1);
     w.u(5, fraction_bits);
     w.u(3, weight_bits);
@@ -109,12 +109,12 @@ struct SkinnedGofRecipe {
       w.u(4, damping_log2);
       w.u(4, outer_weight);
       w.u(4, outer_scale);
-      if (of_high) w.ue(num_adaptive_factors.value_or(0));
+      if (high_profile) w.ue(num_adaptive_factors.value_or(0));
       w.ue(num_layer_groups_minus1);
       for (const std::uint32_t layers : layer_group_layers_minus1) w.ue(layers);
       for (const std::uint32_t step : layer_step_minus1) w.u(4, step);
     }
-    if (of_high) w.flag(rest_order_flag);
+    if (high_profile) w.flag(rest_order_flag);
     if (rest_order_flag) {
       w.u(6, rest_edge_weight);
       w.u(6, rest_ring_weight);

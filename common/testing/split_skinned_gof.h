@@ -33,9 +33,9 @@ class SplitSkinnedGof {
       : whole(seed, sizes), state_(seed) {
     whole.header.profile_idc = kProfileHigh;
     const std::uint32_t num_groups = whole.gof.num_component_groups;
-    const std::size_t of_rig = random() % (num_groups + 1);
-    make_rig(of_rig);
-    make_tracks(of_rig);
+    const std::size_t num_rig_groups = random() % (num_groups + 1);
+    make_rig(num_rig_groups);
+    make_tracks(num_rig_groups);
     if (tracks.trajectories.size() == whole.gof.trajectories.size()) return;
     // Absent tracks count as zero.
     for (std::size_t l = tracks.trajectories.size(); l < whole.gof.trajectories.size(); ++l) {
@@ -49,20 +49,20 @@ class SplitSkinnedGof {
   SkinnedGof tracks;                     // the motion, and the other groups
 
  private:
-  void make_rig(std::size_t of_rig) {
+  void make_rig(std::size_t num_rig_groups) {
     const SkinnedGof& gof = whole.gof;
     rig_idx = static_cast<std::uint32_t>(random() % kMaxRigs);
     auto made = std::make_shared<SharedRig>(gof);
-    made->num_component_groups = static_cast<std::uint32_t>(of_rig);
-    made->slice_layers.resize(of_rig + 1);
-    made->group_end.resize(std::min(of_rig + 1, gof.group_end.size()));
-    made->vertex_residual.resize(std::min(of_rig + 1, gof.vertex_residual.size()));
+    made->num_component_groups = static_cast<std::uint32_t>(num_rig_groups);
+    made->slice_layers.resize(num_rig_groups + 1);
+    made->group_end.resize(std::min(num_rig_groups + 1, gof.group_end.size()));
+    made->vertex_residual.resize(std::min(num_rig_groups + 1, gof.vertex_residual.size()));
     made->trajectories.resize(made->group_end.back() - kRestFactors);
     remove_motion(*made);
     rig = std::move(made);
   }
 
-  void make_tracks(std::size_t of_rig) {
+  void make_tracks(std::size_t num_rig_groups) {
     const SkinnedGof& gof = whole.gof;
     const std::size_t with_slices =
         gof.group_end.size();  // groups, including the group of influences
@@ -78,11 +78,11 @@ class SplitSkinnedGof {
     tracks.influences.clear();
     tracks.group_end = {rig->group_end.back()};
     tracks.vertex_residual = {{}};
-    for (std::size_t group = of_rig + 1; group < with_slices; ++group) {
+    for (std::size_t group = num_rig_groups + 1; group < with_slices; ++group) {
       tracks.group_end.push_back(gof.group_end[group]);
       tracks.vertex_residual.push_back(gof.vertex_residual[group]);
     }
-    if (with_slices <= of_rig + 1) drop_last_tracks(with_slices);
+    if (with_slices <= num_rig_groups + 1) drop_last_tracks(with_slices);
     for (std::size_t l = 0; l < std::min(rig->trajectories.size(), tracks.trajectories.size());
          ++l) {
       if (random() % 4 != 0) continue;

@@ -84,7 +84,7 @@ class ValueContexts {
   ValueContexts(const SectorOrder& order, std::uint32_t num_components)
       : order_(order), components_(num_components) {
     magnitude_.assign(order.order.size() * components_, 0);
-    for (auto& of_class : mean_) of_class.fill(kFirstMean);
+    for (auto& means : mean_) means.fill(kFirstMean);
   }
 
   ResidualModels& models(std::uint32_t x) { return models_[order_.class_of[x]]; }

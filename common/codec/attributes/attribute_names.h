@@ -24,9 +24,9 @@ inline std::string colour_name(std::uint32_t number) {
 // Returns the number of a name that is the prefix and a number; none if it is something else.
 inline std::optional<std::uint32_t> number_after(std::string_view prefix,
                                                  std::string_view name) {
-  constexpr std::uint32_t kMost = 255;  // sets are numbered from 0 on without gaps
+  constexpr std::uint32_t kMax = 255;  // sets are numbered from 0 on without gaps
   if (!name.starts_with(prefix)) return std::nullopt;
-  for (std::uint32_t n = 0; n <= kMost; ++n) {
+  for (std::uint32_t n = 0; n <= kMax; ++n) {
     if (name.substr(prefix.size()) == std::to_string(n)) return n;
   }
   return std::nullopt;

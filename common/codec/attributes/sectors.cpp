@@ -31,8 +31,8 @@ class ListsOfSectors {
     Vector<std::uint32_t> items;
     items.reserve(items_.size());
     for (std::uint32_t x = 0; x < first_.size(); ++x) {
-      const auto of_sector = of(x);
-      items.insert(items.end(), of_sector.begin(), of_sector.end());
+      const auto sector_corners = of(x);
+      items.insert(items.end(), sector_corners.begin(), sector_corners.end());
       first.push_back(static_cast<std::uint32_t>(items.size()));
     }
     return {std::move(first), std::move(items)};
@@ -50,13 +50,13 @@ class SectorQueues {
   explicit SectorQueues(const Sectors& sectors)
       : sectors_(sectors),
         is_placed_(sectors.count(), false),
-        num_known_(sectors.of_corner.size() / 3, 0),
+        num_known_(sectors.sector_of_corner.size() / 3, 0),
         degree_(sectors.count(), 0) {}
 
   bool is_placed(std::uint32_t x) const { return is_placed_[x]; }
   // Returns a sector that has not been placed; one must exist.
   std::uint32_t next() {
-    for (std::size_t d = kMostCounted; d > 0; --d) {
+    for (std::size_t d = kMaxCounted; d > 0; --d) {
       std::size_t& head = heads_[d - 1];
       while (head < queues_[d - 1].size()) {
         const std::uint32_t y = queues_[d - 1][head++];
@@ -72,49 +72,50 @@ class SectorQueues {
       const std::uint32_t t = c / 3;
       if (++num_known_[t] != 2) continue;
       for (std::uint32_t k = 3 * t; k < 3 * t + 3; ++k) {
-        const std::uint32_t y = sectors_.of_corner[k];
-        if (!is_placed_[y] && degree_[y] < kMostCounted) queues_[degree_[y]++].push_back(y);
+        const std::uint32_t y = sectors_.sector_of_corner[k];
+        if (!is_placed_[y] && degree_[y] < kMaxCounted) queues_[degree_[y]++].push_back(y);
       }
     }
   }
 
  private:
-  static constexpr std::size_t kMostCounted = 2;
+  static constexpr std::size_t kMaxCounted = 2;
 
   const Sectors& sectors_;
   Vector<bool> is_placed_;
   Vector<std::uint8_t> num_known_;  // [triangle] known corners
   Vector<std::uint8_t>
-      degree_;  // [sector] triangles with two known corners, at most kMostCounted
-  std::array<Vector<std::uint32_t>, kMostCounted> queues_;
-  std::array<std::size_t, kMostCounted> heads_{};
+      degree_;  // [sector] triangles with two known corners, at most kMaxCounted
+  std::array<Vector<std::uint32_t>, kMaxCounted> queues_;
+  std::array<std::size_t, kMaxCounted> heads_{};
   std::uint32_t lowest_ = 0;
 };
 
 }  // namespace
 
 ListOfLists<std::uint32_t> corners_of_sectors(std::uint32_t num_sectors,
-                                              std::span<const std::uint32_t> of_corner) {
+                                              std::span<const std::uint32_t> sector_of_corner) {
   Vector<std::uint32_t> first(num_sectors + std::size_t{1}, 0);
-  for (const std::uint32_t x : of_corner) ++first[x + 1];
+  for (const std::uint32_t x : sector_of_corner) ++first[x + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
   Vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  Vector<std::uint32_t> corners(of_corner.size());
-  for (std::uint32_t c = 0; c < of_corner.size(); ++c) corners[next[of_corner[c]]++] = c;
+  Vector<std::uint32_t> corners(sector_of_corner.size());
+  for (std::uint32_t c = 0; c < sector_of_corner.size(); ++c)
+    corners[next[sector_of_corner[c]]++] = c;
   return {std::move(first), std::move(corners)};
 }
 
 Sectors sectors_of_corners(std::span<const std::uint32_t> edge_mates,
                            const Vector<bool>& seams) {
   Sectors sectors;
-  sectors.of_corner.assign(edge_mates.size(), kNoSector);
+  sectors.sector_of_corner.assign(edge_mates.size(), kNoSector);
   std::uint32_t count = 0;
   Vector<std::uint32_t> pending;
   for (std::uint32_t c = 0; c < edge_mates.size(); ++c) {
-    if (sectors.of_corner[c] != kNoSector) continue;
+    if (sectors.sector_of_corner[c] != kNoSector) continue;
     const auto reach = [&](std::uint32_t corner) {
-      if (sectors.of_corner[corner] != kNoSector) return;
-      sectors.of_corner[corner] = count;
+      if (sectors.sector_of_corner[corner] != kNoSector) return;
+      sectors.sector_of_corner[corner] = count;
       pending.push_back(corner);
     };
     reach(c);
@@ -127,17 +128,17 @@ Sectors sectors_of_corners(std::span<const std::uint32_t> edge_mates,
     }
     ++count;
   }
-  sectors.corners = corners_of_sectors(count, sectors.of_corner);
+  sectors.corners = corners_of_sectors(count, sectors.sector_of_corner);
   return sectors;
 }
 
 Sectors sectors_of_vertices(std::uint32_t num_vertices, std::span<const Triangle> triangles) {
   Sectors sectors;
-  sectors.of_corner.reserve(3 * triangles.size());
+  sectors.sector_of_corner.reserve(3 * triangles.size());
   for (const Triangle& t : triangles) {
-    sectors.of_corner.insert(sectors.of_corner.end(), t.begin(), t.end());
+    sectors.sector_of_corner.insert(sectors.sector_of_corner.end(), t.begin(), t.end());
   }
-  sectors.corners = corners_of_sectors(num_vertices, sectors.of_corner);
+  sectors.corners = corners_of_sectors(num_vertices, sectors.sector_of_corner);
   return sectors;
 }
 
@@ -159,8 +160,8 @@ SectorOrder::SectorOrder(const Sectors& sectors) {
       if (std::find(so_far.begin(), so_far.end(), y) == so_far.end()) rings.add(x, y);
     };
     for (const std::uint32_t c : sectors.corners[x]) {
-      const std::uint32_t a = sectors.of_corner[next_corner(c)];
-      const std::uint32_t b = sectors.of_corner[previous_corner(c)];
+      const std::uint32_t a = sectors.sector_of_corner[next_corner(c)];
+      const std::uint32_t b = sectors.sector_of_corner[previous_corner(c)];
       if (queues.is_placed(a) && queues.is_placed(b) &&
           triangle_lists.of(x).size() < kMaxSectorTriangles) {
         triangle_lists.add(x, c);

@@ -12,8 +12,8 @@
 namespace rlpc {
 
 struct Sectors {
-  Vector<std::uint32_t> of_corner;     // SectorOf
-  ListOfLists<std::uint32_t> corners;  // SectorCorners
+  Vector<std::uint32_t> sector_of_corner;  // SectorOf
+  ListOfLists<std::uint32_t> corners;      // SectorCorners
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(corners.size()); }
 };
@@ -22,9 +22,9 @@ struct Sectors {
 Sectors sectors_of_corners(std::span<const std::uint32_t> edge_mates,
                            const Vector<bool>& seams);
 Sectors sectors_of_vertices(std::uint32_t num_vertices, std::span<const Triangle> triangles);
-// Returns the corners of each sector, ascending. of_corner: sectors below num_sectors.
+// Returns the corners of each sector, ascending. sector_of_corner: sectors below num_sectors.
 ListOfLists<std::uint32_t> corners_of_sectors(std::uint32_t num_sectors,
-                                              std::span<const std::uint32_t> of_corner);
+                                              std::span<const std::uint32_t> sector_of_corner);
 
 inline constexpr std::size_t kMaxSectorTriangles = 8;
 inline constexpr std::size_t kMaxSectorRing = 8;

@@ -67,8 +67,8 @@ TEST_F(Fan, TwoSeamsSeparateTwoSectors) {
   set_seam(2);
   set_seam(8);
   const Sectors sectors = sectors_of_corners(mates_, seams_);
-  EXPECT_EQ(list(sectors.corners[sectors.of_corner[0]]), (Indices{0, 9}));
-  EXPECT_EQ(list(sectors.corners[sectors.of_corner[3]]), (Indices{3, 6}));
+  EXPECT_EQ(list(sectors.corners[sectors.sector_of_corner[0]]), (Indices{0, 9}));
+  EXPECT_EQ(list(sectors.corners[sectors.sector_of_corner[3]]), (Indices{3, 6}));
   EXPECT_EQ(sectors.count(), 8U);
 }
 
@@ -77,7 +77,7 @@ TEST_F(Fan, SectorsAreNumberedByTheirFirstCorners) {
   set_seam(8);
   const Sectors sectors = sectors_of_corners(mates_, seams_);
   std::uint32_t next = 0;
-  for (const std::uint32_t x : sectors.of_corner) {
+  for (const std::uint32_t x : sectors.sector_of_corner) {
     ASSERT_LE(x, next);
     if (x == next) ++next;
   }
@@ -109,14 +109,14 @@ TEST(SectorOrder, TrianglesAndNeighboursOfASectorAreLimited) {
     }
   }
   const SectorOrder order(sectors_of_vertices(12, all));
-  std::size_t most_triangles = 0;
-  std::size_t most_ring = 0;
+  std::size_t max_triangles = 0;
+  std::size_t max_ring = 0;
   for (std::uint32_t x = 0; x < 12; ++x) {
-    most_triangles = std::max(most_triangles, order.triangles[x].size());
-    most_ring = std::max(most_ring, order.ring[x].size());
+    max_triangles = std::max(max_triangles, order.triangles[x].size());
+    max_ring = std::max(max_ring, order.ring[x].size());
   }
-  EXPECT_EQ(most_triangles, kMaxSectorTriangles);
-  EXPECT_EQ(most_ring, kMaxSectorRing);
+  EXPECT_EQ(max_triangles, kMaxSectorTriangles);
+  EXPECT_EQ(max_ring, kMaxSectorRing);
 }
 
 }  // namespace

@@ -40,11 +40,11 @@ TEST(Round2, TiesGoUp) {
 }
 
 TEST(Round2, TakesTheLargestArguments) {
-  const std::int64_t most = (std::int64_t{1} << 62) - 1;
-  EXPECT_EQ(round2(most, 0), most);
-  EXPECT_EQ(round2(most, 61), 2);
-  EXPECT_EQ(round2(-most, 61), -2);
-  EXPECT_EQ(round2(most, 30), std::int64_t{1} << 32);
+  const std::int64_t max = (std::int64_t{1} << 62) - 1;
+  EXPECT_EQ(round2(max, 0), max);
+  EXPECT_EQ(round2(max, 61), 2);
+  EXPECT_EQ(round2(-max, 61), -2);
+  EXPECT_EQ(round2(max, 30), std::int64_t{1} << 32);
 }
 
 TEST(DivRound, IsTheFloorOfTheDefinitionOnASmallRange) {

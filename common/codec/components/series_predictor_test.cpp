@@ -63,8 +63,8 @@ TEST(PredictSeries, OrderAboveTheDegreeOfAPolynomialIsExact) {
 }
 
 TEST(PredictSeries, IsAtMostFifteenTimesTheLargestPosition) {
-  const std::int64_t most = std::int64_t{1} << 23;
-  EXPECT_EQ(predict({most, -most, most, -most}, 4, 4), -15 * most);
+  const std::int64_t max = std::int64_t{1} << 23;
+  EXPECT_EQ(predict({max, -max, max, -max}, 4, 4), -15 * max);
 }
 
 }  // namespace

@@ -27,9 +27,9 @@ struct RunningMagnitude {
 
 // 9.6.3 and 9.8.2 expected magnitude, from the running magnitude of a track and the running
 // mean of a frame.
-constexpr std::uint32_t expected_in_track(const RunningMagnitude& of_track,
-                                          std::uint32_t of_frame) {
-  return (of_track.fast + of_track.slow + 2 * of_frame) >> 6;
+constexpr std::uint32_t expected_in_track(const RunningMagnitude& running,
+                                          std::uint32_t mean_of_frame) {
+  return (running.fast + running.slow + 2 * mean_of_frame) >> 6;
 }
 
 // 9.6.1 ClippedMagnitude( residual ): scaled to 8 fractional bits, as running means are.

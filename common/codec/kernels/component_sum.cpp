@@ -152,17 +152,17 @@ void ComponentSum::add_tile(std::size_t tile, std::size_t first_row, std::size_t
   assert(tile < spatial_->num_tiles() && first_row + num_rows <= num_rows_);
   assert(sums.size() == num_rows * kTileValues);
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): sum_products() sets what is read.
-  std::array<std::int32_t, kMaxRows * kTileValues> of_segment;
+  std::array<std::int32_t, kMaxRows * kTileValues> segment_sums;
   for (std::size_t r = 0; r < num_rows; r += kMaxRows) {
     const std::size_t rows = std::min(kMaxRows, num_rows - r);
     std::int64_t* const out = &sums[r * kTileValues];
     for (const Segment& segment : segments_) {
-      const Vector<std::int16_t>& of_tile = spatial_->limbs_[segment.list].tiles[tile];
+      const Vector<std::int16_t>& tile_values = spatial_->limbs_[segment.list].tiles[tile];
       const FactorPairs factors{segment.temporal.data(), num_rows_,
-                                &of_tile[2 * kTileValues * segment.first_pair],
+                                &tile_values[2 * kTileValues * segment.first_pair],
                                 segment.num_pairs};
-      loops_.sum_products(factors, first_row + r, rows, of_segment.data());
-      loops_.add_weighted(of_segment.data(), 1 << segment.shift, rows * kTileValues, out);
+      loops_.sum_products(factors, first_row + r, rows, segment_sums.data());
+      loops_.add_weighted(segment_sums.data(), 1 << segment.shift, rows * kTileValues, out);
     }
   }
 }

@@ -48,9 +48,9 @@ ComponentSum sum_of(const std::vector<Factor>& factors, std::size_t num_values,
 std::vector<std::int64_t> sums_of(const ComponentSum& set, std::size_t row) {
   std::vector<std::int64_t> sums;
   for (std::size_t tile = 0; sums.size() < set.num_values(); ++tile) {
-    std::vector<std::int64_t> of_tile(kTileValues);
-    set.add_tile(tile, row, 1, of_tile);
-    sums.insert(sums.end(), of_tile.begin(), of_tile.end());
+    std::vector<std::int64_t> tile_sums(kTileValues);
+    set.add_tile(tile, row, 1, tile_sums);
+    sums.insert(sums.end(), tile_sums.begin(), tile_sums.end());
   }
   sums.resize(set.num_values());
   return sums;
@@ -77,18 +77,18 @@ std::int32_t random_signed(std::mt19937& random, int bits) {
 }
 
 struct Widths {
-  int least_spatial, most_spatial, least_temporal, most_temporal;
+  int min_spatial, max_spatial, min_temporal, max_temporal;
 };
 
 std::vector<Factor> random_factors(std::mt19937& random, const Widths& w, std::size_t count,
                                    std::size_t num_values, std::size_t num_frames) {
-  const auto between = [&](int least, int most) {
-    return least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
+  const auto between = [&](int min, int max) {
+    return min + static_cast<int>(random() % static_cast<unsigned>(max - min + 1));
   };
   std::vector<Factor> factors(count);
   for (Factor& f : factors) {
-    f.spatial_bits = between(w.least_spatial, w.most_spatial);
-    f.temporal_bits = between(w.least_temporal, w.most_temporal);
+    f.spatial_bits = between(w.min_spatial, w.max_spatial);
+    f.temporal_bits = between(w.min_temporal, w.max_temporal);
     for (std::size_t i = 0; i < num_values; ++i) {
       f.spatial.push_back(random_signed(random, f.spatial_bits));
     }
@@ -156,9 +156,9 @@ TEST(ComponentSum, SumsRowsOfATileLikeSingleRows) {
   std::vector<std::int64_t> sums((kRows - 1) * kTileValues);
   set.add_tile(1, 1, kRows - 1, sums);
   for (std::size_t r = 0; r + 1 < kRows; ++r) {
-    const std::vector<std::int64_t> of_row = sums_of(set, r + 1);
+    const std::vector<std::int64_t> row_sums = sums_of(set, r + 1);
     for (std::size_t i = 0; i < kTileValues; ++i) {
-      ASSERT_EQ(sums[r * kTileValues + i], i < 5 ? of_row[kTileValues + i] : 0)
+      ASSERT_EQ(sums[r * kTileValues + i], i < 5 ? row_sums[kTileValues + i] : 0)
           << "row " << r << ", value " << i;
     }
   }

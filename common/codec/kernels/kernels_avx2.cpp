@@ -104,11 +104,11 @@ RLPC_AVX2 void weighted_places(const BoneArms& arms, const std::array<std::int32
   const __m256i o = _mm256_set1_epi64x(origin);
   const __m256i half = _mm256_set1_epi64x(std::int64_t{1} << (kQuaternionFractionBits - 1));
   for (std::size_t i = 0; i < arms.size; i += 4) {
-    const __m256i of_x = _mm256_mul_epi32(x, load_widened(arms.arm[0] + i));
-    const __m256i of_y = _mm256_mul_epi32(y, load_widened(arms.arm[1] + i));
-    const __m256i of_z = _mm256_mul_epi32(z, load_widened(arms.arm[2] + i));
-    const __m256i sum =
-        _mm256_add_epi64(_mm256_add_epi64(of_x, of_y), _mm256_add_epi64(of_z, half));
+    const __m256i product_x = _mm256_mul_epi32(x, load_widened(arms.arm[0] + i));
+    const __m256i product_y = _mm256_mul_epi32(y, load_widened(arms.arm[1] + i));
+    const __m256i product_z = _mm256_mul_epi32(z, load_widened(arms.arm[2] + i));
+    const __m256i sum = _mm256_add_epi64(_mm256_add_epi64(product_x, product_y),
+                                         _mm256_add_epi64(product_z, half));
     // The rotated arm has 32 bits, all that the products read.
     const __m256i turned = _mm256_srli_epi64(sum, kQuaternionFractionBits);
     const __m256i weight = load_widened(arms.weight + i);
@@ -122,20 +122,20 @@ RLPC_AVX2 void positions(const std::int64_t* places, const std::int64_t* displac
   const Round2 round_places(widths.weight_bits);
   const Round2 round_sums(widths.fraction_bits);
   const Round2 round_point(kPointFractionBits);
-  const __m256i most = _mm256_set1_epi64x((std::int64_t{1} << (kLocalBits - 1)) - 1);
-  const __m256i least = _mm256_set1_epi64x(-(std::int64_t{1} << (kLocalBits - 1)));
-  const __m128i most_position = _mm_set1_epi32((1 << (widths.position_bits - 1)) - 1);
-  const __m128i least_position = _mm_set1_epi32(-(1 << (widths.position_bits - 1)));
+  const __m256i max = _mm256_set1_epi64x((std::int64_t{1} << (kLocalBits - 1)) - 1);
+  const __m256i min = _mm256_set1_epi64x(-(std::int64_t{1} << (kLocalBits - 1)));
+  const __m128i max_position = _mm_set1_epi32((1 << (widths.position_bits - 1)) - 1);
+  const __m128i min_position = _mm_set1_epi32(-(1 << (widths.position_bits - 1)));
   const __m256i low_halves = _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6);
   for (std::size_t i = 0; i < kTileValues; i += 4) {
     __m256i moved = round_sums(load(displacements + i));
-    moved = _mm256_blendv_epi8(moved, most, _mm256_cmpgt_epi64(moved, most));
-    moved = _mm256_blendv_epi8(moved, least, _mm256_cmpgt_epi64(least, moved));
+    moved = _mm256_blendv_epi8(moved, max, _mm256_cmpgt_epi64(moved, max));
+    moved = _mm256_blendv_epi8(moved, min, _mm256_cmpgt_epi64(min, moved));
     const __m256i place = _mm256_add_epi64(round_places(load(places + i)), moved);
     // 8.14.3: below 2^34 and 2^30, so that 32 bits are enough after rounding.
     const __m128i narrow =
         _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(round_point(place), low_halves));
-    const __m128i clipped = _mm_max_epi32(_mm_min_epi32(narrow, most_position), least_position);
+    const __m128i clipped = _mm_max_epi32(_mm_min_epi32(narrow, max_position), min_position);
     _mm_storeu_si128(reinterpret_cast<__m128i*>(positions + i), clipped);
   }
 }

@@ -15,25 +15,24 @@ namespace rlpc {
 namespace {
 
 // Returns numbers of random width, often at the extremes.
-std::int64_t random_within(std::mt19937_64& random, std::int64_t least, std::int64_t most) {
+std::int64_t random_within(std::mt19937_64& random, std::int64_t min, std::int64_t max) {
   switch (random() % 8) {
     case 0:
-      return least;
+      return min;
     case 1:
-      return most;
+      return max;
     case 2:
-      return std::clamp<std::int64_t>(static_cast<std::int64_t>(random() % 5) - 2, least, most);
+      return std::clamp<std::int64_t>(static_cast<std::int64_t>(random() % 5) - 2, min, max);
     default:
-      return least + static_cast<std::int64_t>(random() %
-                                               (static_cast<std::uint64_t>(most - least) + 1));
+      return min +
+             static_cast<std::int64_t>(random() % (static_cast<std::uint64_t>(max - min) + 1));
   }
 }
 
-std::vector<std::int32_t> random_list(std::mt19937_64& random, std::size_t n,
-                                      std::int64_t least, std::int64_t most) {
+std::vector<std::int32_t> random_list(std::mt19937_64& random, std::size_t n, std::int64_t min,
+                                      std::int64_t max) {
   std::vector<std::int32_t> list(n);
-  for (std::int32_t& x : list)
-    x = static_cast<std::int32_t>(random_within(random, least, most));
+  for (std::int32_t& x : list) x = static_cast<std::int32_t>(random_within(random, min, max));
   return list;
 }
 
@@ -54,12 +53,12 @@ TEST_P(EachTileLoop, SumsProductsOfAnyRowsAndPairs) {
     const std::int64_t t_most = seed % 2 == 0 ? (1 << 14) : (1 << 15);
     std::vector<std::int16_t> temporal(2 * num_pairs * (first + rows + 1));
     std::vector<std::int16_t> spatial(2 * num_pairs * kTileValues);
-    const std::size_t most_used = seed % 2 == 0 ? 16 : 1;
-    for (std::size_t j = 0; j < std::min(most_used, 2 * num_pairs); ++j) {
-      const auto fill = [&](std::vector<std::int16_t>& list, std::size_t n, std::int64_t most) {
+    const std::size_t max_used = seed % 2 == 0 ? 16 : 1;
+    for (std::size_t j = 0; j < std::min(max_used, 2 * num_pairs); ++j) {
+      const auto fill = [&](std::vector<std::int16_t>& list, std::size_t n, std::int64_t max) {
         for (std::size_t i = 0; i < n; ++i) {
           list[2 * (j / 2 * n + i) + j % 2] =
-              static_cast<std::int16_t>(random_within(random, -most, most - 1));
+              static_cast<std::int16_t>(random_within(random, -max, max - 1));
         }
       };
       fill(temporal, first + rows + 1, t_most);
@@ -139,8 +138,8 @@ TEST_P(EachTileLoop, RoundsAndClipsPositions) {
     // Sums close to the clipping limits, and any others.
     const std::int64_t moved = std::int64_t{3} << (29 + widths.fraction_bits);
     for (std::int64_t& x : displacements) {
-      const std::int64_t most = random() % 2 == 0 ? moved : kSum;
-      x = random_within(random, -most, most);
+      const std::int64_t max = random() % 2 == 0 ? moved : kSum;
+      x = random_within(random, -max, max);
     }
     const std::int64_t place = std::int64_t{5} << (29 + widths.weight_bits);
     for (std::int64_t& x : places) x = random_within(random, -place, place);

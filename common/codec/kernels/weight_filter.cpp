@@ -72,8 +72,8 @@ void adapt_filter(const FilterForm& form, const FilterState& filter,
   for (std::size_t i = 0; i < n; ++i) offset[i] = round2(offsets[i], shift);
 
   std::array<std::int32_t, kMaxFilterSize> gain{};
-  const std::int64_t least_scale = noise(shift);
-  std::int64_t scale = least_scale;
+  const std::int64_t min_scale = noise(shift);
+  std::int64_t scale = min_scale;
   largest = 1;
   for (std::size_t i = 0; i < n; ++i) {
     std::int64_t sum = 0;
@@ -82,7 +82,7 @@ void adapt_filter(const FilterForm& form, const FilterState& filter,
     scale += gain[i] * offset[i];
     largest = std::max(largest, magnitude(gain[i]));
   }
-  const FilterShifts shifts(form, least_scale, scale - least_scale, largest);
+  const FilterShifts shifts(form, min_scale, scale - min_scale, largest);
   std::array<std::int32_t, kMaxFilterSize> change{};
   for (std::size_t i = 0; i < n; ++i) {
     gain[i] = static_cast<std::int32_t>(round2(gain[i], shifts.narrow));

@@ -61,9 +61,8 @@ RLPC_AVX2 __m256i rounded(__m256i x, int n) {
   const __m256i half = _mm256_set1_epi32(static_cast<std::int32_t>((1U << n) >> 1));
   return _mm256_sra_epi32(_mm256_add_epi32(x, half), _mm_cvtsi32_si128(n));
 }
-RLPC_AVX2 __m256i clipped(__m256i x, std::int32_t most) {
-  return _mm256_max_epi32(_mm256_min_epi32(x, _mm256_set1_epi32(most)),
-                          _mm256_set1_epi32(-most));
+RLPC_AVX2 __m256i clipped(__m256i x, std::int32_t max) {
+  return _mm256_max_epi32(_mm256_min_epi32(x, _mm256_set1_epi32(max)), _mm256_set1_epi32(-max));
 }
 
 template <std::size_t kVectors>

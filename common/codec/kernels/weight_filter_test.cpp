@@ -64,17 +64,17 @@ class EachFilter : public testing::TestWithParam<std::size_t> {
 
   // Returns a number within 2^bits; often at the ends, or zero.
   static std::int64_t number(std::mt19937_64& random, int bits) {
-    const std::int64_t most = std::int64_t{1} << bits;
+    const std::int64_t max = std::int64_t{1} << bits;
     switch (random() % 8) {
       case 0:
-        return most;
+        return max;
       case 1:
-        return -most;
+        return -max;
       case 2:
         return 0;
       default:
-        return static_cast<std::int64_t>(random() % (2 * static_cast<std::uint64_t>(most))) -
-               most;
+        return static_cast<std::int64_t>(random() % (2 * static_cast<std::uint64_t>(max))) -
+               max;
     }
   }
 

@@ -36,17 +36,17 @@ Vector<std::uint32_t> find_edge_mates(std::uint32_t num_vertices,
   Vector<Across> across(num_vertices);
   Vector<std::uint32_t> mates(3 * triangles.size(), kNoCorner);
   for (std::uint32_t low = 0; low < num_vertices; ++low) {
-    const auto of_low = std::span(edges).subspan(first[low], first[low + 1] - first[low]);
+    const auto low_edges = std::span(edges).subspan(first[low], first[low + 1] - first[low]);
     const auto begin_of = [&](std::uint32_t edge) { return vertex_of_corner(triangles, edge); };
     const auto high_of = [&](std::uint32_t edge) {
       return begin_of(edge) == low ? begin_of(next_corner(edge)) : begin_of(edge);
     };
-    for (const std::uint32_t edge : of_low) {
+    for (const std::uint32_t edge : low_edges) {
       Across& x = across[high_of(edge)];
       if (x.count < 2) x.edges[x.count] = edge;
       ++x.count;
     }
-    for (const std::uint32_t edge : of_low) {
+    for (const std::uint32_t edge : low_edges) {
       Across& x = across[high_of(edge)];
       if (x.count == 2 && begin_of(x.edges[0]) != begin_of(x.edges[1])) {
         mates[x.edges[0]] = x.edges[1];

@@ -12,7 +12,7 @@ namespace rlpc {
 namespace {
 
 constexpr std::uint32_t kNotPlaced = 0xFFFFFFFF;
-constexpr std::size_t kMostCounted =
+constexpr std::size_t kMaxCounted =
     3;  // maximum number of hinges that raise the priority of a vertex
 
 // Groups indices into lists, in the order of appending.
@@ -113,8 +113,8 @@ void RestOrder::make_order() {
   const ListOfLists<std::uint32_t> edges_of_vertex = group_indices(place_.size(), vertices);
   Vector<std::uint8_t> num_known(edges_.size(), 0);
   Vector<std::uint8_t> degree(place_.size(), 0);
-  std::array<Vector<std::uint32_t>, kMostCounted + 1> queues;
-  std::array<std::size_t, kMostCounted + 1> heads{};
+  std::array<Vector<std::uint32_t>, kMaxCounted + 1> queues;
+  std::array<std::size_t, kMaxCounted + 1> heads{};
   Vector<std::uint32_t> first_hinge{0};
   first_hinge.resize(place_.size() + 1);
   Vector<Hinge> hinges_in_order;
@@ -124,7 +124,7 @@ void RestOrder::make_order() {
   std::uint32_t lowest = 0;
   while (order_.size() < place_.size()) {
     std::uint32_t v = kNotPlaced;
-    for (std::size_t d = kMostCounted; d > 0 && v == kNotPlaced; --d) {
+    for (std::size_t d = kMaxCounted; d > 0 && v == kNotPlaced; --d) {
       while (v == kNotPlaced && heads[d] < queues[d].size()) {
         const std::uint32_t u = queues[d][heads[d]++];
         if (place_[u] == kNotPlaced) v = u;
@@ -146,8 +146,7 @@ void RestOrder::make_order() {
           hinges_in_order.push_back(edge.seen_from(k));
           ++count_of[v];
         }
-        if (num_known[i] == 3 && place_[corner] == kNotPlaced &&
-            degree[corner] < kMostCounted) {
+        if (num_known[i] == 3 && place_[corner] == kNotPlaced && degree[corner] < kMaxCounted) {
           queues[++degree[corner]].push_back(corner);
         }
       }
@@ -156,8 +155,8 @@ void RestOrder::make_order() {
   Vector<Hinge> hinges;
   hinges.reserve(hinges_in_order.size());
   for (std::size_t v = 0; v < place_.size(); ++v) {
-    const auto of_vertex = std::span(hinges_in_order).subspan(begin_of[v], count_of[v]);
-    hinges.insert(hinges.end(), of_vertex.begin(), of_vertex.end());
+    const auto vertex_hinges = std::span(hinges_in_order).subspan(begin_of[v], count_of[v]);
+    hinges.insert(hinges.end(), vertex_hinges.begin(), vertex_hinges.end());
     first_hinge[v + 1] = static_cast<std::uint32_t>(hinges.size());
   }
   hinges_of_vertex_ = {std::move(first_hinge), std::move(hinges)};

@@ -178,13 +178,13 @@ TEST(RestOrder, RingsPrecedeTheirVertices) {
 // An edge of three triangles, and two triangles on the same three vertices, are no hinges.
 TEST(RestOrder, EdgesOfOtherThanTwoCornersAreNoHinges) {
   const Triangles fin{{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
-  const RestOrder of_fin(make_topology(5, fin), fin);
+  const RestOrder fin_order(make_topology(5, fin), fin);
   const Triangles twice{{0, 1, 2}, {1, 0, 2}};
-  const RestOrder of_twice(make_topology(3, twice), twice);
-  for (std::uint32_t v = 0; v < 5; ++v) EXPECT_TRUE(of_fin.hinges(v).empty());
-  for (std::uint32_t v = 0; v < 3; ++v) EXPECT_TRUE(of_twice.hinges(v).empty());
-  EXPECT_FALSE(of_fin.across({0, 1, 2}));
-  EXPECT_FALSE(of_twice.across({0, 1, 2}));
+  const RestOrder twice_order(make_topology(3, twice), twice);
+  for (std::uint32_t v = 0; v < 5; ++v) EXPECT_TRUE(fin_order.hinges(v).empty());
+  for (std::uint32_t v = 0; v < 3; ++v) EXPECT_TRUE(twice_order.hinges(v).empty());
+  EXPECT_FALSE(fin_order.across({0, 1, 2}));
+  EXPECT_FALSE(twice_order.across({0, 1, 2}));
 }
 
 }  // namespace

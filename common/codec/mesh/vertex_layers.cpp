@@ -299,16 +299,16 @@ const Triangulation* LayerMaker::choose_triangulation(const Ring& ring, EdgeSet 
     }
   }
   const Triangulation* best = nullptr;
-  std::int32_t least = kForbidden;
+  std::int32_t min = kForbidden;
   const TriangulationList& all = triangulations()[ring.size];
   for (std::size_t t = 0; t < all.size; ++t) {
     const Triangulation& triangulation = all.items[t];
     if ((triangulation.edges & barred) != 0) continue;
     std::int32_t cost = 0;
     for (std::size_t i = 0; i < ring.size; ++i) cost += costs[i][triangulation.corners[i]];
-    if (cost >= least) continue;
+    if (cost >= min) continue;
     best = &triangulation;
-    least = cost;
+    min = cost;
   }
   return best;
 }

@@ -66,11 +66,11 @@ class VertexWeights {
     const auto n = static_cast<std::int64_t>(ring_size_);
     const auto m = static_cast<std::int64_t>(outer_size);
     const std::int64_t a = m == 0 ? 0 : settings_.outer_weight;
-    const std::int64_t of_ring = n > 0 ? div_round((16 + a) << 10, n) : 0;
-    const std::int64_t of_outer = m > 0 ? -div_round(a << 10, m) : 0;
-    std::fill_n(weights_.begin(), ring_size_, of_ring);
-    std::fill(weights_.begin() + static_cast<std::ptrdiff_t>(n), weights_.end(), of_outer);
-    const std::int64_t left = kOne - n * of_ring - m * of_outer;
+    const std::int64_t ring_weight = n > 0 ? div_round((16 + a) << 10, n) : 0;
+    const std::int64_t outer_weight = m > 0 ? -div_round(a << 10, m) : 0;
+    std::fill_n(weights_.begin(), ring_size_, ring_weight);
+    std::fill(weights_.begin() + static_cast<std::ptrdiff_t>(n), weights_.end(), outer_weight);
+    const std::int64_t left = kOne - n * ring_weight - m * outer_weight;
     if (n > 0) weights_[0] += left;
   }
 

@@ -19,10 +19,10 @@ Vec3l RestPrediction::predict(std::uint32_t v, const Weights& weights) const {
   const auto n = static_cast<std::int64_t>(ring.size());
   const auto m = static_cast<std::int64_t>(hinges.size());
   for (std::size_t c = 0; c < 3; ++c) {
-    std::int64_t of_ring = 0;
-    for (const std::uint32_t u : ring) of_ring += at(u, c);
+    std::int64_t ring_sum = 0;
+    for (const std::uint32_t u : ring) ring_sum += at(u, c);
     if (hinges.empty()) {
-      prediction[c] = div_round(of_ring, n);
+      prediction[c] = div_round(ring_sum, n);
       continue;
     }
     std::int64_t ends = 0;
@@ -32,7 +32,7 @@ Vec3l RestPrediction::predict(std::uint32_t v, const Weights& weights) const {
       height += at(hinge.a, c) + at(hinge.b, c) - 2 * at(hinge.c, c);
     }
     const std::int64_t sum = n * ((16 - weights.ring) * ends + weights.edge * height) +
-                             2 * m * weights.ring * of_ring;
+                             2 * m * weights.ring * ring_sum;
     prediction[c] = clip_signed(bits_, div_round(sum, 32 * m * n));
   }
   return prediction;
@@ -59,8 +59,8 @@ RestAxes RestPrediction::axes(std::span<const Hinge> hinges) const {
         height[c] += arm[c];
       }
     }
-    const Vec3l of_hinge = cross(arms[i][0], arms[i][1]);
-    for (std::size_t c = 0; c < 3; ++c) area[c] += of_hinge[c];
+    const Vec3l hinge_area = cross(arms[i][0], arms[i][1]);
+    for (std::size_t c = 0; c < 3; ++c) area[c] += hinge_area[c];
   }
   const Vec3l normal = normalize3(area);
   const Vec3l side = normalize3(cross(normal, height));
@@ -80,23 +80,23 @@ Vec3l RestPrediction::base(std::span<const Hinge> hinges) const {
   return sum;
 }
 
-Vec3l RestPrediction::from_counterpart(std::span<const Hinge> own, const RestAxes& of_own,
+Vec3l RestPrediction::from_counterpart(std::span<const Hinge> own, const RestAxes& own_axes,
                                        std::span<const Hinge> other, std::uint32_t counterpart,
                                        bool mirrored) const {
-  constexpr std::int64_t kMost = std::int64_t{1} << 28;
-  const RestAxes of_other = axes(other);
+  constexpr std::int64_t kMax = std::int64_t{1} << 28;
+  const RestAxes other_axes = axes(other);
   Vec3l offset = base(other);
   for (std::size_t c = 0; c < 3; ++c) {
-    offset[c] = clip3(-kMost, kMost, at(counterpart, c) - offset[c]);
+    offset[c] = clip3(-kMax, kMax, at(counterpart, c) - offset[c]);
   }
   Vec3l along{};
   for (std::size_t i = 0; i < 3; ++i) {
-    along[i] = round2(
-        of_other[i][0] * offset[0] + of_other[i][1] * offset[1] + of_other[i][2] * offset[2],
-        30);
+    along[i] = round2(other_axes[i][0] * offset[0] + other_axes[i][1] * offset[1] +
+                          other_axes[i][2] * offset[2],
+                      30);
   }
   if (mirrored) along[2] = -along[2];
-  Vec3l prediction = turned(of_own, along);
+  Vec3l prediction = turned(own_axes, along);
   const Vec3l from = base(own);
   for (std::size_t c = 0; c < 3; ++c) {
     prediction[c] = clip_signed(bits_, from[c] + prediction[c]);

@@ -30,8 +30,8 @@ class RestPrediction {
   // 8.18.6 Reconstruction: MeanParallelogram( hinges )
   Vec3l base(std::span<const Hinge> hinges) const;
   // 8.18.6 Reconstruction: PredictFromCounterpart( v, hinges, axes ). own[i] corresponds to
-  // other[i]; of_own: axes of own.
-  Vec3l from_counterpart(std::span<const Hinge> own, const RestAxes& of_own,
+  // other[i]; own_axes: axes of own.
+  Vec3l from_counterpart(std::span<const Hinge> own, const RestAxes& own_axes,
                          std::span<const Hinge> other, std::uint32_t counterpart,
                          bool mirrored) const;
 

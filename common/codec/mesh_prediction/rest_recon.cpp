@@ -10,7 +10,7 @@ namespace rlpc {
 namespace {
 
 // Largest difference of two rest positions along any axis.
-constexpr std::int64_t kMostDifference = std::int64_t{1} << 30;
+constexpr std::int64_t kMaxDifference = std::int64_t{1} << 30;
 
 }  // namespace
 
@@ -30,9 +30,9 @@ Vec3l predict_from_counterpart(const RestPrediction& predictor, const HingePairs
     own[i] = pairs.list[i].own;
     other[i] = pairs.list[i].other;
   }
-  const auto of_own = std::span(own).first(pairs.size);
-  axes = predictor.axes(of_own);
-  return predictor.from_counterpart(of_own, axes, std::span(other).first(pairs.size),
+  const auto own_hinges = std::span(own).first(pairs.size);
+  axes = predictor.axes(own_hinges);
+  return predictor.from_counterpart(own_hinges, axes, std::span(other).first(pairs.size),
                                     pairs.counterpart, pairs.list[0].mirrored);
 }
 
@@ -47,13 +47,13 @@ void RestRecon::start(std::uint32_t v, const HingePairs* counterparts) {
   }
   if (!settings_.axes_flag) axes_ = RestPrediction::world();
   if (!settings_.exact_flag) return;
-  for (std::int64_t& of_axis : prediction_) of_axis = to_grid(of_axis);
+  for (std::int64_t& value : prediction_) value = to_grid(value);
 }
 
 void RestRecon::finish(const Vec3i& residual) {
   Vec3l difference{};
   for (std::size_t c = 0; c < kRestFactors; ++c) {
-    difference[c] = clip3(-kMostDifference, kMostDifference, residual[c] * rest_step_);
+    difference[c] = clip3(-kMaxDifference, kMaxDifference, residual[c] * rest_step_);
   }
   difference = RestPrediction::turned(axes_, difference);
   for (std::size_t c = 0; c < kRestFactors; ++c) {

@@ -26,7 +26,7 @@ class RestContexts {
  public:
   explicit RestContexts(const RestOrder& order)
       : order_(order), magnitudes_(order.num_vertices()) {
-    for (auto& of_class : mean_) of_class.fill(256);
+    for (auto& class_means : mean_) class_means.fill(256);
   }
 
   // Starts vertex v, whose residuals follow, once its class is known. classes: classes of the

@@ -21,8 +21,8 @@ class RestContextsOfText {
  public:
   explicit RestContextsOfText(const RestOrder& order)
       : rest_class(order.num_vertices(), 0), order_(order) {
-    for (auto& of_class : rest_mean_) of_class.fill(256);
-    for (auto& of_axis : magnitude_) of_axis.assign(order.num_vertices(), 0);
+    for (auto& class_means : rest_mean_) class_means.fill(256);
+    for (auto& magnitudes : magnitude_) magnitudes.assign(order.num_vertices(), 0);
   }
 
   std::vector<std::size_t> rest_class;
@@ -166,7 +166,7 @@ TEST(RandomRestContexts, AreThoseOfTheText) {
     RestContextsOfText text(order);
     RestContexts contexts(order);
     Counterparts counterparts(order);
-    const std::uint32_t most_bits = seed % 3 == 0 ? 28 : 9;
+    const std::uint32_t max_bits = seed % 3 == 0 ? 28 : 9;
     for (const std::uint32_t v : order.order()) {
       counterparts.start(v);
       bool used = false;
@@ -183,8 +183,7 @@ TEST(RandomRestContexts, AreThoseOfTheText) {
       text.start(v);
       for (std::size_t c = 0; c < 3; ++c) {
         ASSERT_EQ(contexts.expected(c), text.expected(c, v)) << v << ' ' << c;
-        auto residual =
-            static_cast<std::int32_t>(random() & ((1U << below(most_bits + 1)) - 1));
+        auto residual = static_cast<std::int32_t>(random() & ((1U << below(max_bits + 1)) - 1));
         if (seed % 3 == 0 && below(6) == 0) residual = (1 << 28) - 1;
         if (below(2) == 0) residual = -residual;
         contexts.update(c, residual);

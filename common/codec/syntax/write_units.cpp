@@ -40,15 +40,15 @@ Bytes write_gof_hash(std::span<const std::uint32_t> position_crc, bool per_frame
 }
 
 bool GofIndexEntries::fits() const {
-  constexpr std::uint64_t kMost = 0xFFFFFFFE;
+  constexpr std::uint64_t kMax = 0xFFFFFFFE;
   std::uint64_t previous = 0;
   for (const RigIndexEntry& rig : rigs) {
-    if (rig.offset - previous > kMost) return false;
+    if (rig.offset - previous > kMax) return false;
     previous = rig.offset;
   }
-  return first_gof_offset <= kMost &&
+  return first_gof_offset <= kMax &&
          std::all_of(gofs.begin(), gofs.end(),
-                     [](const GofEntry& gof) { return gof.bytes <= kMost; });
+                     [](const GofEntry& gof) { return gof.bytes <= kMax; });
 }
 
 // 6.9 gof_index( )

@@ -44,7 +44,7 @@ void ComparedNormals::measure_areas() {
                        static_cast<double>(n[2])};
       const auto size = static_cast<float>(std::sqrt(dot(area, area)));
       for (std::uint32_t c = 3 * t; c < 3 * t + 3; ++c)
-        areas[mesh_.sectors.of_corner[c]] += size;
+        areas[mesh_.sectors.sector_of_corner[c]] += size;
     }
   });
   for (std::uint32_t x = 0; x < count; ++x) {
@@ -66,7 +66,7 @@ void ComparedNormals::find_surface() {
     add_surroundings(mesh_.triangles, vertices_.corners[v], first, first, none);
     if (none.find()) continue;
     for (const std::uint32_t c : vertices_.corners[v]) {
-      can_turn_[mesh_.sectors.of_corner[c]] = false;
+      can_turn_[mesh_.sectors.sector_of_corner[c]] = false;
     }
   }
 }
@@ -92,7 +92,7 @@ void ComparedNormals::measure(std::size_t f) {
     add_surroundings(mesh_.triangles, vertices_.corners[v], first, compared.positions, turn);
     if (!turn.find()) continue;
     for (const std::uint32_t c : vertices_.corners[v]) {
-      const std::uint32_t x = mesh_.sectors.of_corner[c];
+      const std::uint32_t x = mesh_.sectors.sector_of_corner[c];
       frame.turned[x] = turn.turned_back(compared.normals[x]);
     }
   }

@@ -152,7 +152,7 @@ class SmoothingSearch {
     std::vector<std::uint32_t> sectors;
     for (const std::uint32_t t : faces.triangles_around(c)) {
       for (std::uint32_t k = 3 * t; k < 3 * t + 3; ++k) {
-        sectors.push_back(mesh_.sectors.of_corner[k]);
+        sectors.push_back(mesh_.sectors.sector_of_corner[k]);
       }
     }
     std::sort(sectors.begin(), sectors.end());

@@ -113,8 +113,8 @@ AttributeValue AttributePredictor::texture_coordinates(std::uint32_t x) {
 }
 
 void AttributePredictor::add_uv_prediction(std::size_t kind, std::int64_t u, std::int64_t v) {
-  constexpr std::int64_t kMost = std::int64_t{1} << 24;
-  uv_predictions_.push_back({kind, {clip3(-kMost, kMost, u), clip3(-kMost, kMost, v)}});
+  constexpr std::int64_t kMax = std::int64_t{1} << 24;
+  uv_predictions_.push_back({kind, {clip3(-kMax, kMax, u), clip3(-kMax, kMax, v)}});
 }
 
 void AttributePredictor::add_uv_predictions(std::uint32_t e) {

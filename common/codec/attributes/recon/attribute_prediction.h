@@ -49,7 +49,7 @@ class AttributePredictor {
   };
 
   const AttributeValue& value(std::uint32_t x) const { return values_[x]; }
-  std::uint32_t sector_of(std::uint32_t c) const { return mesh_.sectors.of_corner[c]; }
+  std::uint32_t sector_of(std::uint32_t c) const { return mesh_.sectors.sector_of_corner[c]; }
   std::optional<std::uint32_t> corner_across(std::uint32_t e) const;
   AttributeValue from_neighbours(std::uint32_t x) const;
   AttributeValue texture_coordinates(std::uint32_t x);

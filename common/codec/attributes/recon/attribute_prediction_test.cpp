@@ -128,12 +128,13 @@ TEST(AttributePredictor, IntegersAreClippedAndFloatsWrap) {
   const Vector<bool> none;
   const Sectors sectors = sectors_of_vertices(0, {});
   const SectorOrder order(sectors);
-  const AttributePredictor of_integers({header, mates, none, sectors, order});
-  EXPECT_EQ(of_integers.value_of({1020, 3}, residual), (AttributeValue{1023, 0}));
+  const AttributePredictor integer_predictor({header, mates, none, sectors, order});
+  EXPECT_EQ(integer_predictor.value_of({1020, 3}, residual), (AttributeValue{1023, 0}));
   header.kind = ValueKind::kFloats;
   header.value_bits = 32;
-  const AttributePredictor of_floats({header, mates, none, sectors, order});
-  EXPECT_EQ(of_floats.value_of({0xFFFFFFFE, 3}, residual), (AttributeValue{3, 0xFFFFFFFE}));
+  const AttributePredictor float_predictor({header, mates, none, sectors, order});
+  EXPECT_EQ(float_predictor.value_of({0xFFFFFFFE, 3}, residual),
+            (AttributeValue{3, 0xFFFFFFFE}));
 }
 
 }  // namespace

@@ -53,8 +53,8 @@ AttributeSet recon_set(const CodedAttributeSet& coded, std::uint32_t num_vertice
           {coded.header, edge_mates, coded.seams, sectors, order, &geometry, &view},
           coded.residuals);
     }
-    if (faces) set.face_of_triangle = std::move(faces->of_triangles());
-    if (is_corner) set.value_of_corner = std::move(sectors.of_corner);
+    if (faces) set.face_of_triangle = std::move(faces->face_of_triangle());
+    if (is_corner) set.value_of_corner = std::move(sectors.sector_of_corner);
   }
   if (coded.header.kind == ValueKind::kFloats) {
     for (std::uint32_t& value : set.values) value = unordered_bits(value);

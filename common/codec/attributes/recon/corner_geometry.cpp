@@ -61,8 +61,8 @@ std::int64_t CornerGeometry::angle_at(std::uint32_t c) const {
 }
 
 std::int64_t place_along(const Vec3l& v, const Vec3l& edge, std::int64_t length) {
-  constexpr std::int64_t kMost = std::int64_t{64} << kCornerFractionBits;
-  return clip3(-kMost, kMost, div_round(dot(v, edge) * (1 << kCornerFractionBits), length));
+  constexpr std::int64_t kMax = std::int64_t{64} << kCornerFractionBits;
+  return clip3(-kMax, kMax, div_round(dot(v, edge) * (1 << kCornerFractionBits), length));
 }
 
 std::int64_t height_above(const Vec3l& v, const Vec3l& edge, std::int64_t length) {

@@ -31,7 +31,7 @@ class Faces {
         const Vector<bool>& flags, bool with_normals);
 
   FaceView view() const { return {face_of_, normals_}; }
-  Vector<std::uint32_t>& of_triangles() { return face_of_; }
+  Vector<std::uint32_t>& face_of_triangle() { return face_of_; }
 
  private:
   std::uint32_t root(std::uint32_t t) const {

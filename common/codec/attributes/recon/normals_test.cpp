@@ -55,15 +55,15 @@ TEST_F(SquareAndWall, EdgesHaveMates) {
 TEST_F(SquareAndWall, LikelyDiagonalJoinsTheSquare) {
   const std::vector<bool> none(mates_.size(), false);
   Faces faces(geometry_, Diagonals::kLikely, mates_, none, none, true);
-  EXPECT_EQ(faces.of_triangles(), (std::vector<std::uint32_t>{0, 0, 2}));
+  EXPECT_EQ(faces.face_of_triangle(), (std::vector<std::uint32_t>{0, 0, 2}));
   EXPECT_EQ(faces.view().normals[0], (Vec3l{0, 0, 20000}));
   // The flag excludes the likely diagonal.
   std::vector<bool> flags = none;
   flags[2] = flags[3] = true;
   Faces apart(geometry_, Diagonals::kLikely, mates_, none, flags, true);
-  EXPECT_EQ(apart.of_triangles(), (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(apart.face_of_triangle(), (std::vector<std::uint32_t>{0, 1, 2}));
   Faces flagged(geometry_, Diagonals::kFlagged, mates_, none, flags, true);
-  EXPECT_EQ(flagged.of_triangles(), (std::vector<std::uint32_t>{0, 0, 2}));
+  EXPECT_EQ(flagged.face_of_triangle(), (std::vector<std::uint32_t>{0, 0, 2}));
 }
 
 TEST_F(SquareAndWall, WeightsOfFaces) {
