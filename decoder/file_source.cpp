@@ -96,8 +96,8 @@ Result<std::unique_ptr<ByteSource>> piped_source(std::FILE* file, File owned,
     return Error{Errc::kLimitExceeded, "", "stream", 0};
   }
   // Stops reading input that is not a stream.
-  const std::uint64_t most = begins_like_stream(input.beginning()) ? max_memory_bytes : 0;
-  return {std::make_unique<PipedSource>(std::move(input), std::move(owned), most)};
+  const std::uint64_t max = begins_like_stream(input.beginning()) ? max_memory_bytes : 0;
+  return {std::make_unique<PipedSource>(std::move(input), std::move(owned), max)};
 }
 
 }  // namespace

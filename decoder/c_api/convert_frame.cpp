@@ -44,9 +44,9 @@ void write(const rlpc_channel& channel, std::size_t count, const Value& value) {
 
 template <class Int>
 Int rounded(double value) {
-  const double most = std::numeric_limits<Int>::max();
-  const double least = std::numeric_limits<Int>::min();
-  return static_cast<Int>(std::nearbyint(std::clamp(value, least, most)));
+  const double max = std::numeric_limits<Int>::max();
+  const double min = std::numeric_limits<Int>::min();
+  return static_cast<Int>(std::nearbyint(std::clamp(value, min, max)));
 }
 
 }  // namespace

@@ -26,18 +26,19 @@ struct Int16Scale {
 // Returns the scale with which 16 bits cover every position of position_bits bits.
 Int16Scale int16_scale(const Grid& grid, int position_bits);
 
-// Triples of numbers [i][3], and the index of the triple of each output vertex; of_vertex is
-// empty if vertex i has triple i.
+// Triples of numbers [i][3], and the index of the triple of each output vertex; vertex_of_drawn
+// is empty if vertex i has triple i.
 template <class Number>
 struct Triples {
   std::span<const Number> numbers;
-  std::span<const std::uint32_t> of_vertex;
+  std::span<const std::uint32_t> vertex_of_drawn;
 
   std::size_t num_vertices() const {
-    return of_vertex.empty() ? numbers.size() / 3 : of_vertex.size();
+    return vertex_of_drawn.empty() ? numbers.size() / 3 : vertex_of_drawn.size();
   }
   const Number* at(std::size_t vertex) const {
-    return &numbers[3 * (of_vertex.empty() ? vertex : std::size_t{of_vertex[vertex]})];
+    return &numbers[3 *
+                    (vertex_of_drawn.empty() ? vertex : std::size_t{vertex_of_drawn[vertex]})];
   }
 };
 

@@ -62,14 +62,14 @@ bool check_buffer(rlpc_decoder& handle, const void* buffer, std::size_t num_valu
 
 rlpc_status give_indices(rlpc_decoder& handle, std::span<const Triangle> triangles,
                          std::uint32_t num_vertices, const IndexBuffer& buffer) {
-  constexpr std::uint32_t kMostOf16Bits = 65536;
+  constexpr std::uint32_t kMax16BitVertices = 65536;
   const auto bad = [&](const std::string& what) {
     return handle.error.set(RLPC_BAD_ARGUMENT, what);
   };
   if (buffer.index_bytes != 2 && buffer.index_bytes != 4) {
     return bad("index_bytes: expected 2 or 4, got " + std::to_string(buffer.index_bytes));
   }
-  if (buffer.index_bytes == 2 && num_vertices > kMostOf16Bits) {
+  if (buffer.index_bytes == 2 && num_vertices > kMax16BitVertices) {
     return bad("16 bits cannot hold the indices of more than 65536 vertices");
   }
   const std::size_t wanted = 3 * triangles.size() * buffer.index_bytes;

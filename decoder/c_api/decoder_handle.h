@@ -68,7 +68,7 @@ bool check_buffer(rlpc_decoder& handle, const void* buffer, std::size_t num_valu
                   std::size_t wanted);
 
 // Computes the box of the last blend for rlpc_decoder_bounds.
-void give_bounds(const rlpc_decoder& handle, float* least, float* most);
+void give_bounds(const rlpc_decoder& handle, float* min, float* max);
 
 struct IndexBuffer {
   void* indices = nullptr;

@@ -41,10 +41,10 @@ rlpc_status check_channel(rlpc_decoder& handle, const char* name, const rlpc_cha
 }  // namespace
 
 rlpc_status check_output(rlpc_decoder& handle, const rlpc_frame_output& output) {
-  constexpr std::array<std::uint32_t, 4> kOfPositions{RLPC_FORMAT_INT32, RLPC_FORMAT_FLOAT,
-                                                      RLPC_FORMAT_HALF, RLPC_FORMAT_INT16};
-  constexpr std::array<std::uint32_t, 4> kOfNormals{RLPC_FORMAT_FLOAT, RLPC_FORMAT_HALF,
-                                                    RLPC_FORMAT_INT16, RLPC_FORMAT_INT8};
+  constexpr std::array<std::uint32_t, 4> kPositionFormats{RLPC_FORMAT_INT32, RLPC_FORMAT_FLOAT,
+                                                          RLPC_FORMAT_HALF, RLPC_FORMAT_INT16};
+  constexpr std::array<std::uint32_t, 4> kNormalFormats{RLPC_FORMAT_FLOAT, RLPC_FORMAT_HALF,
+                                                        RLPC_FORMAT_INT16, RLPC_FORMAT_INT8};
   if (output.normal_weight > RLPC_NORMAL_WEIGHT_ANGLE) {
     return bad_output(handle,
                       "normal_weight: unknown value " + std::to_string(output.normal_weight));
@@ -63,11 +63,11 @@ rlpc_status check_output(rlpc_decoder& handle, const rlpc_frame_output& output) 
   const std::size_t num_vertices = output.split != 0 ? handle.drawn->vertices().num_vertices()
                                                      : handle.decoder->num_vertices();
   if (const auto status =
-          check_channel(handle, "positions", output.positions, kOfPositions, num_vertices);
+          check_channel(handle, "positions", output.positions, kPositionFormats, num_vertices);
       status != RLPC_OK) {
     return status;
   }
-  return check_channel(handle, "normals", output.normals, kOfNormals, num_vertices);
+  return check_channel(handle, "normals", output.normals, kNormalFormats, num_vertices);
 }
 
 Int16Scale scale_of(const rlpc_frame_output& output, const SequenceHeader& header) {

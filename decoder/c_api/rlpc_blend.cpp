@@ -15,7 +15,8 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kOfSet = RLPC_NORMAL_WEIGHT_ANGLE + 1;  // normals of the set `normal`
+constexpr std::uint32_t kSetWeight =
+    RLPC_NORMAL_WEIGHT_ANGLE + 1;  // normals of the set `normal`
 
 rlpc_status check_blend(rlpc_decoder& handle, const rlpc_blend& blend,
                         const rlpc_frame_output& output) {
@@ -61,7 +62,7 @@ rlpc_status take_frames(rlpc_decoder& handle, const rlpc_blend& blend) {
 void find_normals(rlpc_decoder& handle, BlendFrame& frame, std::uint32_t normals_of) {
   if (!frame.normals.empty() && frame.normals_of == normals_of) return;
   std::span<const double> sums;
-  if (normals_of == kOfSet) {
+  if (normals_of == kSetWeight) {
     sums = handle.drawn->normals().sums(std::span<const std::int32_t>(frame.positions));
   } else {
     sum_normals(frame.positions, handle.decoder->triangles(),
@@ -89,7 +90,7 @@ void write_blend(rlpc_decoder& handle, const rlpc_frame_output& output, BlendFra
   }
   if (output.normals.data == nullptr) return;
   const bool has_set = output.split != 0 && handle.drawn->has_normals();
-  const std::uint32_t normals_of = has_set ? kOfSet : output.normal_weight;
+  const std::uint32_t normals_of = has_set ? kSetWeight : output.normal_weight;
   find_normals(handle, first, normals_of);
   find_normals(handle, second, normals_of);
   if (has_set) vertices = handle.drawn->normal_of_vertex();
@@ -106,7 +107,7 @@ std::pair<std::size_t, std::size_t> shown_frames(const rlpc_blend& blend) {
 
 }  // namespace
 
-void give_bounds(const rlpc_decoder& handle, float* least, float* most) {
+void give_bounds(const rlpc_decoder& handle, float* min, float* max) {
   const Blend& blend = handle.blend;
   const auto& first = blend.frames[blend.shown[0]].positions;
   const auto& second = blend.frames[blend.shown[1]].positions;
@@ -119,8 +120,8 @@ void give_bounds(const rlpc_decoder& handle, float* least, float* most) {
       high = std::max(high, mix.at(v, c));
     }
     const Grid& grid = handle.decoder->header().grid;
-    least[c] = float_position(grid, c, low);
-    most[c] = float_position(grid, c, high);
+    min[c] = float_position(grid, c, low);
+    max[c] = float_position(grid, c, high);
   }
 }
 

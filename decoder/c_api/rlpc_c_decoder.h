@@ -278,7 +278,7 @@ RLPC_API rlpc_status rlpc_decoder_prefetch(rlpc_decoder* decoder, uint32_t frame
 // decoded, in the units of the encoder's input: smallest and largest x, y and z. Reads all
 // vertices; allocates nothing. Returns RLPC_BAD_ARGUMENT if no frame has been decoded.
 // Since 1.2.
-RLPC_API rlpc_status rlpc_decoder_bounds(rlpc_decoder* decoder, float least[3], float most[3]);
+RLPC_API rlpc_status rlpc_decoder_bounds(rlpc_decoder* decoder, float min[3], float max[3]);
 // Reports the memory in use for frames, estimated for the worst contents: usually several times
 // what is allocated. Excludes attributes, drawn vertices and the asset, which take as much as
 // their functions return. struct_size: sizeof *memory. Since 1.2.

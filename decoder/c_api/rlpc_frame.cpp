@@ -142,15 +142,15 @@ rlpc_status rlpc_decoder_int16_scale(rlpc_decoder* decoder, double scale[3], dou
   });
 }
 
-rlpc_status rlpc_decoder_bounds(rlpc_decoder* decoder, float least[3], float most[3]) {
+rlpc_status rlpc_decoder_bounds(rlpc_decoder* decoder, float min[3], float max[3]) {
   return rlpc::guarded(decoder, [&] {
-    if (least == nullptr || most == nullptr || !decoder->has_frame) {
+    if (min == nullptr || max == nullptr || !decoder->has_frame) {
       return decoder->error.set(RLPC_BAD_ARGUMENT, decoder->has_frame
-                                                       ? "least or most is null"
+                                                       ? "min or max is null"
                                                        : "no frame has been decoded");
     }
     if (decoder->blend.is_shown) {
-      rlpc::give_bounds(*decoder, least, most);
+      rlpc::give_bounds(*decoder, min, max);
       return RLPC_OK;
     }
     const rlpc::Vector<std::int32_t>& positions = decoder->positions;
@@ -162,8 +162,8 @@ rlpc_status rlpc_decoder_bounds(rlpc_decoder* decoder, float least[3], float mos
         high = std::max(high, positions[i]);
       }
       const rlpc::Grid& grid = decoder->decoder->header().grid;
-      least[c] = rlpc::float_position(grid, c, low);
-      most[c] = rlpc::float_position(grid, c, high);
+      min[c] = rlpc::float_position(grid, c, low);
+      max[c] = rlpc::float_position(grid, c, high);
     }
     return RLPC_OK;
   });

@@ -113,17 +113,17 @@ rlpc_status bad_pose(rlpc_decoder& handle, const std::string& what) {
 
 // Returns RLPC_OK if the pose has bones, and slots are in range.
 rlpc_status check_pose(rlpc_decoder& handle, std::uint32_t slots = 1) {
-  constexpr std::uint32_t kMostSlots = 65536;
+  constexpr std::uint32_t kMaxSlots = 65536;
   if (!handle.pose) return bad_pose(handle, "the pose has no bones: see rlpc_decoder_pose");
-  if (slots >= 1 && slots <= kMostSlots) return RLPC_OK;
+  if (slots >= 1 && slots <= kMaxSlots) return RLPC_OK;
   return bad_pose(handle, "slots: " + std::to_string(slots) + " is not in the range of 1 to " +
-                              std::to_string(kMostSlots));
+                              std::to_string(kMaxSlots));
 }
 
 std::uint32_t max_influences(const Skeleton& skeleton) {
-  std::size_t most = 0;
-  for (const auto& list : skeleton.influences) most = std::max(most, list.size());
-  return static_cast<std::uint32_t>(most);
+  std::size_t max = 0;
+  for (const auto& list : skeleton.influences) max = std::max(max, list.size());
+  return static_cast<std::uint32_t>(max);
 }
 
 void write_influences(const Skeleton& skeleton, std::size_t slots, std::uint16_t* bones,

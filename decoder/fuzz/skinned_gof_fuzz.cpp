@@ -51,8 +51,8 @@ std::vector<Piece> pieces_of(rlpc::FuzzInput& input) {
 }
 
 void check_influences(const rlpc::SharedRig& gof,
-                      std::span<const rlpc::Influences> of_vertices) {
-  for (const rlpc::Influences& influences : of_vertices) {
+                      std::span<const rlpc::Influences> vertex_influences) {
+  for (const rlpc::Influences& influences : vertex_influences) {
     int sum = 0;
     for (const rlpc::Influence& influence : influences) {
       rlpc::fuzz_check(influence.bone < gof.bones.size() && influence.weight > 0);

@@ -53,7 +53,7 @@ bool is_mesh(SinkFormat format) {
 }
 
 // Returns a lower bound of the bytes to write.
-std::uint64_t least_bytes(SinkFormat format, const SinkOptions& options) {
+std::uint64_t min_bytes(SinkFormat format, const SinkOptions& options) {
   const std::uint64_t vertices = options.num_vertices;
   const std::uint64_t triangles = options.triangles.size();
   const std::uint64_t frames = options.num_frames;
@@ -161,7 +161,7 @@ std::optional<std::string> find_written_input(const std::string& path, SinkForma
 OutputResult<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& path,
                                                          SinkOptions options) {
   const SinkFormat format = sink_format(path, options.format);
-  if (options.limit != nullptr && least_bytes(format, options) > options.limit->left) {
+  if (options.limit != nullptr && min_bytes(format, options) > options.limit->left) {
     return options.limit->exceeded(path == "-" ? "standard output" : path);
   }
   if (path == "-") return open_standard_output(std::move(options));

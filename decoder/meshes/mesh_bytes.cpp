@@ -24,15 +24,15 @@ void append_digits(std::string& text, Number value) {
 }
 
 // Returns a set of vertices or corners with least to most components; null if there is none.
-const AttributeSet* find_values(const SinkOptions& options, const char* name,
-                                std::uint32_t least, std::uint32_t most) {
+const AttributeSet* find_values(const SinkOptions& options, const char* name, std::uint32_t min,
+                                std::uint32_t max) {
   const AttributeSet* const set = find_set(options.attributes, name);
   if (set == nullptr || set->header.domain == AttributeDomain::kTriangle) return nullptr;
   if (set->header.domain == AttributeDomain::kCorner && options.triangles.empty()) {
     return nullptr;
   }
   const std::uint32_t n = number_components(set->header);
-  return n >= least && n <= most ? set : nullptr;
+  return n >= min && n <= max ? set : nullptr;
 }
 
 const AttributeSet* find_indices(const SinkOptions& options, const char* name) {

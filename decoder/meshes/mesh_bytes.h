@@ -58,7 +58,9 @@ class MeshNormals {
   bool exist() const { return normals_.has_value(); }
   // Returns [normal][3]. xyz: vertices of the frame.
   std::span<const float> of(std::span<const float> xyz);
-  std::uint32_t of_corner(std::size_t corner) const { return normals_->of_corner(corner); }
+  std::uint32_t normal_of_corner(std::size_t corner) const {
+    return normals_->normal_of_corner(corner);
+  }
 
  private:
   std::optional<FrameNormals> normals_;

@@ -125,7 +125,7 @@ void ObjBytes::append_faces(const ObjMaterials& materials) {
       }
       if (!normals_.exist()) continue;
       faces_ += uv != nullptr ? "/" : "//";
-      append_number(faces_, std::uint64_t{normals_.of_corner(c)} + 1);
+      append_number(faces_, std::uint64_t{normals_.normal_of_corner(c)} + 1);
     }
     faces_ += '\n';
   }

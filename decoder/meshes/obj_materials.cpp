@@ -59,8 +59,8 @@ std::array<double, 2> pair_of(const GltfJson* list, double otherwise) {
 
 std::uint32_t set_of(const GltfJson* info, std::uint32_t otherwise) {
   const GltfJson* const set = member(info, "texCoord");
-  constexpr std::uint64_t kMost = 0xFFFFFFFF;
-  if (set == nullptr || !set->is_number_unsigned() || set->get<std::uint64_t>() > kMost) {
+  constexpr std::uint64_t kMax = 0xFFFFFFFF;
+  if (set == nullptr || !set->is_number_unsigned() || set->get<std::uint64_t>() > kMax) {
     return otherwise;
   }
   return set->get<std::uint32_t>();

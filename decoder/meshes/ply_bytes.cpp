@@ -84,12 +84,12 @@ void PlyBytes::append_vertex(std::uint32_t vertex, std::span<const float> normal
     append(normals[3 * std::size_t{normal_of_vertex_[vertex]} + c]);
   }
   for (std::size_t c = 0; c < uv_.width; ++c) {
-    append(uv_.numbers[uv_.width * uv_.of_vertex[vertex] + c]);
+    append(uv_.numbers[uv_.width * uv_.value_of_vertex[vertex] + c]);
   }
   for (std::size_t c = 0; c < colours_.width; ++c) {
-    constexpr float kMost = 255.0F;
-    const float x = colours_.numbers[colours_.width * colours_.of_vertex[vertex] + c];
-    const auto byte = static_cast<std::uint8_t>(std::lround(x * kMost));
+    constexpr float kMax = 255.0F;
+    const float x = colours_.numbers[colours_.width * colours_.value_of_vertex[vertex] + c];
+    const auto byte = static_cast<std::uint8_t>(std::lround(x * kMax));
     if (options_.ascii) {
       append_number(bytes_, std::uint64_t{byte});
       bytes_ += ' ';

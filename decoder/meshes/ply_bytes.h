@@ -24,7 +24,7 @@ class PlyBytes : public MeshBytes {
   struct Values {
     std::vector<float> numbers;
     std::size_t width = 0;
-    std::vector<std::uint32_t> of_vertex;
+    std::vector<std::uint32_t> value_of_vertex;
   };
 
   void split();

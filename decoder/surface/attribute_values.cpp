@@ -137,13 +137,13 @@ FrameNormals::FrameNormals(const AttributeSet& set, std::span<const Triangle> tr
 void FrameNormals::find_terms() {
   if (set_.header.weight == SmoothingWeight::kAngle) {
     for (std::uint32_t c = 0; c < 3 * triangles_.size(); ++c) {
-      if (follows(of_corner(c))) angles_.push_back(c);
+      if (follows(normal_of_corner(c))) angles_.push_back(c);
     }
     return;
   }
   terms_.reserve(3 * triangles_.size());
   for (std::size_t c = 0; c < 3 * triangles_.size(); ++c) {
-    const std::uint32_t normal = of_corner(c);
+    const std::uint32_t normal = normal_of_corner(c);
     if (follows(normal)) terms_.push_back({normal, set_.face_of_triangle[c / 3]});
   }
   std::sort(terms_.begin(), terms_.end());
@@ -179,7 +179,7 @@ void FrameNormals::add_up(std::span<const Coordinate> xyz) {
     const Vec3 n = cross(a, b);
     const double length = std::sqrt(dot(face, face));
     if (length > 0.0) {
-      add(of_corner(c), face, std::atan2(std::sqrt(dot(n, n)), dot(a, b)) / length);
+      add(normal_of_corner(c), face, std::atan2(std::sqrt(dot(n, n)), dot(a, b)) / length);
     }
   }
 }
@@ -218,7 +218,7 @@ void FrameNormals::find_followers() {
     LocalTurn none;
     add_surroundings(triangles_, corners_[v], first, first, none);
     if (none.find()) continue;
-    for (const std::uint32_t c : corners_[v]) follows_[of_corner(c)] = 1;
+    for (const std::uint32_t c : corners_[v]) follows_[normal_of_corner(c)] = 1;
   }
 }
 
@@ -227,7 +227,7 @@ void FrameNormals::find_turning_vertices() {
   for (std::uint32_t v = 0; v < corners_.size(); ++v) {
     const std::span<const std::uint32_t> corners = corners_[v];
     const bool turns = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t c) {
-      return !follows(of_corner(c)) && is_wanted(of_corner(c));
+      return !follows(normal_of_corner(c)) && is_wanted(normal_of_corner(c));
     });
     if (turns) turning_vertices_.push_back(v);
   }
@@ -240,24 +240,25 @@ void FrameNormals::restrict_to(Vector<std::uint8_t> wanted) {
   terms_.erase(std::remove_if(terms_.begin(), terms_.end(),
                               [&](const auto& term) { return !is_wanted(term[0]); }),
                terms_.end());
-  angles_.erase(std::remove_if(angles_.begin(), angles_.end(),
-                               [&](std::uint32_t c) { return !is_wanted(of_corner(c)); }),
-                angles_.end());
-  Vector<std::uint8_t> of_face(faces_.size());
+  angles_.erase(
+      std::remove_if(angles_.begin(), angles_.end(),
+                     [&](std::uint32_t c) { return !is_wanted(normal_of_corner(c)); }),
+      angles_.end());
+  Vector<std::uint8_t> is_face(faces_.size());
   for (std::size_t c = 0; c < 3 * triangles_.size(); ++c) {
-    const bool is_used = follows(of_corner(c)) && is_wanted(of_corner(c));
-    if (is_used) of_face[set_.face_of_triangle[c / 3]] = 1;
+    const bool is_used = follows(normal_of_corner(c)) && is_wanted(normal_of_corner(c));
+    if (is_used) is_face[set_.face_of_triangle[c / 3]] = 1;
   }
   has_wanted_.resize(triangles_.size());
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    has_wanted_[t] = of_face[set_.face_of_triangle[t]];
+    has_wanted_[t] = is_face[set_.face_of_triangle[t]];
   }
 }
 
 template <class Coordinate>
 void FrameNormals::turn_first(std::span<const Coordinate> xyz) {
   const std::span<const std::int32_t> first = set_.first_positions;
-  const auto is_turned = [&](std::uint32_t c) { return !follows(of_corner(c)); };
+  const auto is_turned = [&](std::uint32_t c) { return !follows(normal_of_corner(c)); };
   for (const std::uint32_t v : turning_vertices_) {
     const std::span<const std::uint32_t> corners = corners_[v];
     LocalTurn turn;
@@ -265,7 +266,7 @@ void FrameNormals::turn_first(std::span<const Coordinate> xyz) {
     turn.find();
     for (const std::uint32_t c : corners) {
       if (!is_turned(c)) continue;
-      const std::size_t i = 3 * std::size_t{of_corner(c)};
+      const std::size_t i = 3 * std::size_t{normal_of_corner(c)};
       const Vec3 normal = turn.turned({first_[i], first_[i + 1], first_[i + 2]});
       std::copy(normal.begin(), normal.end(), &sums_[i]);
     }

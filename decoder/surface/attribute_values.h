@@ -33,7 +33,7 @@ class FrameNormals {
 
   std::uint32_t count() const { return count_; }
   // Returns the index of the normal at corner 3 * t + k.
-  std::uint32_t of_corner(std::size_t corner) const {
+  std::uint32_t normal_of_corner(std::size_t corner) const {
     return set_.value_of_corner.empty() ? triangles_[corner / 3][corner % 3]
                                         : set_.value_of_corner[corner];
   }

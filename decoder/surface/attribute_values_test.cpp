@@ -81,10 +81,10 @@ TEST(FrameNormals, IntegersAndFloatsOfAFrameGiveTheSame) {
   FrameNormals a(set, kSquare, 4);
   FrameNormals b(set, kSquare, 4);
   const std::vector<float> flat(kFlat.begin(), kFlat.end());
-  const auto of_floats = a.sums(std::span<const float>(flat));
-  const auto of_integers = b.sums(std::span<const std::int32_t>(kFlat));
-  for (std::size_t i = 0; i < of_floats.size(); ++i) {
-    EXPECT_NEAR(of_floats[i], of_integers[i], 1e-9);
+  const auto float_sums = a.sums(std::span<const float>(flat));
+  const auto integer_sums = b.sums(std::span<const std::int32_t>(kFlat));
+  for (std::size_t i = 0; i < float_sums.size(); ++i) {
+    EXPECT_NEAR(float_sums[i], integer_sums[i], 1e-9);
   }
 }
 

@@ -54,8 +54,8 @@ SplitVertices split_vertices(std::span<const Triangle> triangles, std::uint32_t 
     values.push_back(values_of_corners(*set, triangles));
   }
   const auto compare = [&](std::uint32_t c, std::uint32_t d) {
-    for (const Indices& of_set : values) {
-      if (of_set[c] != of_set[d]) return of_set[c] < of_set[d] ? -1 : 1;
+    for (const Indices& set_values : values) {
+      if (set_values[c] != set_values[d]) return set_values[c] < set_values[d] ? -1 : 1;
     }
     return 0;
   };

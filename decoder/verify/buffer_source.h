@@ -15,12 +15,12 @@ namespace rlpc {
 
 class BufferSource final : public ByteSource {
  public:
-  // most: number of bytes that are visible.
+  // max: number of bytes that are visible.
   explicit BufferSource(std::shared_ptr<StreamBuffer> stream,
-                        std::uint64_t most = std::numeric_limits<std::uint64_t>::max())
-      : stream_(std::move(stream)), most_(most) {}
+                        std::uint64_t max = std::numeric_limits<std::uint64_t>::max())
+      : stream_(std::move(stream)), max_(max) {}
 
-  std::uint64_t size() const override { return std::min(stream_->size(), most_); }
+  std::uint64_t size() const override { return std::min(stream_->size(), max_); }
   bool read(std::uint64_t offset, std::span<std::uint8_t> out) override {
     return offset <= size() && out.size() <= size() - offset && stream_->read(offset, out);
   }
@@ -32,7 +32,7 @@ class BufferSource final : public ByteSource {
 
  private:
   std::shared_ptr<StreamBuffer> stream_;
-  std::uint64_t most_;
+  std::uint64_t max_;
   bool releases_ = false;
 };
 

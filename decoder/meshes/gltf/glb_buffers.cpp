@@ -185,11 +185,11 @@ std::uint32_t GlbBuffers::add_byte_vectors(std::span<const std::int8_t> xyz,
   std::string values;
   std::string padded;  // each vertex begins at a multiple of 4
   for (std::uint32_t v = 0; v < count; ++v) {
-    const auto of_vertex = xyz.subspan(3 * std::size_t{v}, 3);
-    const std::string bytes(of_vertex.begin(), of_vertex.end());
+    const auto position = xyz.subspan(3 * std::size_t{v}, 3);
+    const std::string bytes(position.begin(), position.end());
     padded += bytes;
     padded += '\0';
-    if (std::ranges::count(of_vertex, 0) == 3) continue;
+    if (std::ranges::count(position, 0) == 3) continue;
     places.push_back(v);
     values += bytes;
   }

@@ -29,13 +29,13 @@ GlbMesh plain_mesh(std::uint32_t num_vertices, std::vector<Triangle> triangles);
 
 // Copies values of the vertices of the stream, `width` each, to the output vertices.
 template <class T>
-std::vector<T> of_output_vertices(const GlbMesh& mesh, std::span<const T> values,
-                                  std::size_t width) {
+std::vector<T> expanded_values(const GlbMesh& mesh, std::span<const T> values,
+                               std::size_t width) {
   std::vector<T> expanded;
   expanded.reserve(mesh.vertex.size() * width);
   for (const std::uint32_t v : mesh.vertex) {
-    const auto of_vertex = values.subspan(v * width, width);
-    expanded.insert(expanded.end(), of_vertex.begin(), of_vertex.end());
+    const auto vertex_values = values.subspan(v * width, width);
+    expanded.insert(expanded.end(), vertex_values.begin(), vertex_values.end());
   }
   return expanded;
 }

@@ -94,8 +94,8 @@ std::vector<JointMaps> maps_of_frames(const JointMotion& motion, std::span<const
   std::vector<JointMaps> maps(num_frames);
   for (std::size_t i = 0; i < spans.size(); ++i) {
     for (std::uint32_t f = 0; f < spans[i].num_frames; ++f) {
-      JointMaps& of_frame = maps[spans[i].first_frame + f];
-      if (of_frame.empty()) of_frame = joint_maps(motion, i, f);
+      JointMaps& frame_maps = maps[spans[i].first_frame + f];
+      if (frame_maps.empty()) frame_maps = joint_maps(motion, i, f);
     }
   }
   return maps;
@@ -166,18 +166,17 @@ GltfJson mesh_of(const GltfLook& look, std::size_t num_joints, std::span<const f
                  const SkinInfluences& influences, std::span<const float> normals,
                  const SkinTargets& targets, GlbBuffers& buffers) {
   const GlbMesh& mesh = look.mesh();
-  const auto joints =
-      of_output_vertices<std::uint16_t>(mesh, influences.joints, kJointsOfVertex);
+  const auto joints = expanded_values<std::uint16_t>(mesh, influences.joints, kJointsOfVertex);
   const auto weights =
-      of_output_vertices<std::uint16_t>(mesh, influences.weights, kJointsOfVertex);
+      expanded_values<std::uint16_t>(mesh, influences.weights, kJointsOfVertex);
   GltfJson attributes = {
-      {"POSITION", buffers.add_vectors(of_output_vertices(mesh, rest, 3))},
+      {"POSITION", buffers.add_vectors(expanded_values(mesh, rest, 3))},
       {"JOINTS_0", buffers.add_joints(joints, static_cast<std::uint32_t>(num_joints))},
       {"WEIGHTS_0", buffers.add_joint_weights(weights, influences.whole)}};
   if (!normals.empty()) attributes["NORMAL"] = buffers.add_normals(normals);
   look.add_values(attributes, buffers);
-  const GltfJson of_primitive = targets_of(targets, mesh, buffers);
-  GltfJson json = {{"primitives", primitives_of(mesh, attributes, of_primitive, buffers)}};
+  const GltfJson primitive_targets = targets_of(targets, mesh, buffers);
+  GltfJson json = {{"primitives", primitives_of(mesh, attributes, primitive_targets, buffers)}};
   if (targets.count() > 0) json["weights"] = first_weights(targets);
   return json;
 }

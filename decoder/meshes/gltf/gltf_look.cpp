@@ -35,14 +35,14 @@ GltfLook::GltfLook(const std::vector<AttributeSet>& sets, std::span<const Triang
 // Makes a part of the mesh for each pair of a material and a part of the stream.
 void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
                           std::span<const Triangle> triangles) {
-  const auto of_triangles = [&](const char* name) {
+  const auto find_indices = [&](const char* name) {
     const AttributeSet* const set = find_set(sets, name);
     const bool fits = set != nullptr && set->header.domain == AttributeDomain::kTriangle &&
                       set->header.num_components == 1;
     return fits ? set : nullptr;
   };
-  const AttributeSet* const material = of_triangles(kMaterialName);
-  const AttributeSet* const part = of_triangles(kPartName);
+  const AttributeSet* const material = find_indices(kMaterialName);
+  const AttributeSet* const part = find_indices(kPartName);
   const std::size_t num_materials =
       asset_.root().contains("materials") ? asset_.root()["materials"].size() : 0;
   std::map<std::pair<std::uint32_t, std::optional<std::uint32_t>>, std::size_t> found;
@@ -65,13 +65,13 @@ void GltfLook::make_parts(const std::vector<AttributeSet>& sets,
 // (encoder/meshes/gltf/equal_uv.h).
 std::map<std::uint32_t, std::uint32_t> GltfLook::equal_uvs() const {
   std::map<std::uint32_t, std::uint32_t> equal;
-  constexpr std::size_t kMost = 256;
+  constexpr std::size_t kMax = 256;
   const GltfJson& root = asset_.root();
   if (!root.is_object() || !root.contains("extras")) return equal;
   const GltfJson& extras = root["extras"];
   if (!extras.is_object() || !extras.contains("equal_uv")) return equal;
   const GltfJson& list = extras["equal_uv"];
-  for (std::uint32_t n = 0; list.is_array() && n < std::min(list.size(), kMost); ++n) {
+  for (std::uint32_t n = 0; list.is_array() && n < std::min(list.size(), kMax); ++n) {
     if (!list[n].is_number_unsigned()) continue;
     const auto first = list[n].get<std::uint64_t>();
     if (first < n && !uvs_.contains(n) && uvs_.contains(static_cast<std::uint32_t>(first))) {
@@ -121,15 +121,15 @@ std::vector<float> GltfLook::normals(std::span<const float> xyz) const {
   return normals(drawn_->normals(), xyz);
 }
 
-std::vector<float> GltfLook::normals(FrameNormals& of_frames,
+std::vector<float> GltfLook::normals(FrameNormals& normals_of_frames,
                                      std::span<const float> xyz) const {
-  std::vector<float> all(3 * std::size_t{of_frames.count()});
-  of_frames.compute(xyz, all);
+  std::vector<float> all(3 * std::size_t{normals_of_frames.count()});
+  normals_of_frames.compute(xyz, all);
   std::vector<float> normals;
   normals.reserve(3 * drawn_->normal_of_vertex().size());
   for (const std::uint32_t i : drawn_->normal_of_vertex()) {
-    const auto of_vertex = std::span(all).subspan(3 * std::size_t{i}, 3);
-    normals.insert(normals.end(), of_vertex.begin(), of_vertex.end());
+    const auto vertex_normal = std::span(all).subspan(3 * std::size_t{i}, 3);
+    normals.insert(normals.end(), vertex_normal.begin(), vertex_normal.end());
   }
   return normals;
 }

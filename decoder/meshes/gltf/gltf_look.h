@@ -30,9 +30,9 @@ class GltfLook {
   bool has_normals() const { return drawn_->has_normals(); }
   // Computes the normals of output vertices, if has_normals(). xyz: vertices of the stream.
   std::vector<float> normals(std::span<const float> xyz) const;
-  // Computes the normals on any thread. of_frames: a copy of frame_normals(); if it is
+  // Computes the normals on any thread. normals_of_frames: a copy of frame_normals(); if it is
   // restricted, the normals that it omits are undefined.
-  std::vector<float> normals(FrameNormals& of_frames, std::span<const float> xyz) const;
+  std::vector<float> normals(FrameNormals& normals_of_frames, std::span<const float> xyz) const;
   const FrameNormals& frame_normals() const { return drawn_->normals(); }
   // Returns the index in frame_normals() of the normal of each output vertex.
   std::span<const std::uint32_t> normal_of_vertex() const { return drawn_->normal_of_vertex(); }

@@ -26,7 +26,7 @@ std::optional<std::vector<float>> exact_moves(std::span<const float> from,
 
 void GltfMorph::add_frame(std::span<const float> xyz) {
   GlbBuffers& buffers = document_.buffers;
-  std::vector<float> places = of_output_vertices(mesh_, xyz, 3);
+  std::vector<float> places = expanded_values(mesh_, xyz, 3);
   if (num_frames_ == 0) {
     base_ = std::move(places);
     attributes_["POSITION"] = buffers.add_vectors(base_);
@@ -85,11 +85,11 @@ std::uint32_t GltfMorph::weights_of(const Clip& clip) {
 
 bool GltfMorph::finish(std::span<const Clip> spans, FrameRate frame_rate) {
   GlbBuffers& buffers = document_.buffers;
-  std::uint64_t most_weights = 0;
+  std::uint64_t max_weights = 0;
   for (const Clip& clip : spans) {
-    most_weights += std::uint64_t{clip.num_frames} * (targets_.size() + 1);
+    max_weights += std::uint64_t{clip.num_frames} * (targets_.size() + 1);
   }
-  if (most_weights > kMaxGlbBytes) return false;
+  if (max_weights > kMaxGlbBytes) return false;
   if (num_frames_ > 1 && targets_.empty()) {
     // An animation without motion still has a duration.
     add_target(buffers.add_zero_vectors(static_cast<std::uint32_t>(mesh_.vertex.size())));

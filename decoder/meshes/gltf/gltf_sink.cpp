@@ -20,8 +20,8 @@ constexpr std::uint64_t kSkinBytesOfPosition = 24;
 class GltfMorphSink final : public GltfSink {
  public:
   // why: a remark; may be empty.
-  GltfMorphSink(SinkOptions of_sink, OutputFile file, const std::string& why)
-      : GltfSink(std::move(of_sink), std::move(file)),
+  GltfMorphSink(SinkOptions sink_options, OutputFile file, const std::string& why)
+      : GltfSink(std::move(sink_options), std::move(file)),
         document_(options().frame_rate),
         morph_(document_, look()) {
     if (!why.empty()) remark(why);
@@ -68,7 +68,7 @@ std::optional<OutputError> GltfSink::write_frame(std::span<const std::int32_t> p
 }
 
 void GltfSink::warn_of_targets(std::size_t num_targets, const char* remedy) {
-  if (num_targets <= kMostTargetsShown) return;
+  if (num_targets <= kMaxTargetsShown) return;
   remark(to_string(num_targets) +
          " morph targets, more than the 2,000 or so that viewers such as three.js can hold; "
          "write " +

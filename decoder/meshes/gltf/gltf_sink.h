@@ -19,7 +19,7 @@
 namespace rlpc {
 
 // Number of targets beyond which three.js shows none: graphics cards have 2,048 layers.
-inline constexpr std::size_t kMostTargetsShown = 2000;
+inline constexpr std::size_t kMaxTargetsShown = 2000;
 
 class GltfSink : public FrameSink {
  public:

@@ -15,11 +15,11 @@ using std::to_string;
 
 // Memory of places, keys and maps of a bone in a frame.
 constexpr std::uint64_t kSkinBytesOfBone = 512;
-constexpr std::size_t kMostJointsShown = 256;
+constexpr std::size_t kMaxJointsShown = 256;
 // fixed: a price. If the residual of bones is N > 1 times the error of the stream, frames may
 // take N times this many times their bytes. Half and twice choose bones for the same 14
 // streams.
-constexpr double kMostTimes = 4;
+constexpr double kMaxTimes = 4;
 
 // Poses of the frames so far.
 class Poses {
@@ -93,8 +93,8 @@ std::string text_of(const SkinError& error) {
 
 class GltfSkinSink final : public GltfSink {
  public:
-  GltfSkinSink(SinkOptions of_sink, OutputFile file)
-      : GltfSink(std::move(of_sink), std::move(file)), poses_(options().max_skin_bytes) {
+  GltfSkinSink(SinkOptions sink_options, OutputFile file)
+      : GltfSink(std::move(sink_options), std::move(file)), poses_(options().max_skin_bytes) {
     source_.grid = options().grid;
   }
 
@@ -137,7 +137,7 @@ class GltfSkinSink final : public GltfSink {
           "allowed ('max_skin_bytes')");
     }
     warn_of_targets(skin.num_targets, "fewer ('max_targets')");
-    if (skin.num_joints > kMostJointsShown) {
+    if (skin.num_joints > kMaxJointsShown) {
       remark("more than the 256 bones that some viewers can hold; write 'motion = morph'");
     }
     return write(document);
@@ -163,11 +163,11 @@ class GltfSkinSink final : public GltfSink {
   // Returns whether to write a morph target per frame instead of bones: never more of them than
   // viewers support, however few bytes they take.
   bool frames_are_better(const GlbDocument& document, const GlbSkin& skin) const {
-    if (num_moving_ > kMostTargetsShown) return false;
+    if (num_moving_ > kMaxTargetsShown) return false;
     const double times = static_cast<double>(morph_bytes_) /
                          static_cast<double>(document.buffers.chunk().size());
     return times <= 1 || (skin.error.rms > skin.stream_rms &&
-                          times <= kMostTimes * skin.error.rms / skin.stream_rms);
+                          times <= kMaxTimes * skin.error.rms / skin.stream_rms);
   }
 
   // Returns about the bytes of a frame as a morph target; 0 if it equals the first frame.

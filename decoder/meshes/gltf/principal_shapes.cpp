@@ -17,8 +17,8 @@ using Eigen::MatrixXf;
 
 // Numbers of frames and vertices from which a block is made: all, or as many at equal
 // distances, different ones for each block.
-constexpr Index kMostFrames = 256;
-constexpr Index kMostVertices = 2048;
+constexpr Index kMaxSampledFrames = 256;
+constexpr Index kMaxSampledVertices = 2048;
 constexpr Index kTargetsOfBlock = 16;
 constexpr Index kRows = 4096;  // rows multiplied at a time
 
@@ -28,7 +28,7 @@ constexpr Index kRows = 4096;  // rows multiplied at a time
 // half of the tolerance, 0.25 saves 15 to 25 % of files with many targets; 0.2 or 0.35 save 1
 // to 5 % less or more, depending on the model; 0.5 may double the number of targets.
 constexpr double kThinned = 0.25;
-constexpr double kMostThinned = 0.2;
+constexpr double kMaxThinned = 0.2;
 
 // Returns index `i` of `count` out of `total`.
 Index chosen(Index i, Index count, Index total, Index number) {
@@ -36,7 +36,7 @@ Index chosen(Index i, Index count, Index total, Index number) {
 }
 
 MatrixXf some_columns(const MatrixXf& moves, Index number) {
-  const Index count = std::min(kMostFrames, moves.cols());
+  const Index count = std::min(kMaxSampledFrames, moves.cols());
   MatrixXf some(moves.rows(), count);
   for (Index i = 0; i < count; ++i) {
     some.col(i) = moves.col(chosen(i, count, moves.cols(), number));
@@ -46,7 +46,7 @@ MatrixXf some_columns(const MatrixXf& moves, Index number) {
 
 MatrixXf some_vertices(const MatrixXf& moves, Index number) {
   const Index total = moves.rows() / 3;
-  const Index count = std::min(kMostVertices, total);
+  const Index count = std::min(kMaxSampledVertices, total);
   MatrixXf some(3 * count, moves.cols());
   for (Index i = 0; i < count; ++i) {
     some.middleRows<3>(3 * i) = moves.middleRows<3>(3 * chosen(i, count, total, number));
@@ -98,7 +98,7 @@ void thin_out(Eigen::Ref<Eigen::VectorXf> column, double length) {
     if (square < length * length) order.emplace_back(square, i);
   }
   std::ranges::sort(order);
-  double room = kMostThinned * column.squaredNorm();
+  double room = kMaxThinned * column.squaredNorm();
   for (const auto& [square, i] : order) {
     room -= square;
     if (room < 0) break;
@@ -117,7 +117,7 @@ class Budget {
         weights_(num_frames_ * (has_short_weights ? 2 : 4)) {
     if (price_ == nullptr) return;
     bytes_ = price_->file_bytes;
-    of_target_ = kVertexBytes * price_->written_vertices * num_vertices_ + weights_;
+    target_bytes_ = kVertexBytes * price_->written_vertices * num_vertices_ + weights_;
   }
 
   // Returns numbers to minimise, the first one first: the excess of squares over those of the
@@ -125,7 +125,7 @@ class Budget {
   // targets. count: number of further targets; left: squares of their residual.
   std::array<double, 2> loss(Index count, double left) const {
     if (price_ == nullptr) return {0, -static_cast<double>(count)};
-    const double bytes = bytes_ + static_cast<double>(count) * of_target_;
+    const double bytes = bytes_ + static_cast<double>(count) * target_bytes_;
     const double other = price_->other_rms * price_->other_rms;
     const double own = left / (num_vertices_ * num_frames_);
     return {std::max(0.0, own - other), bytes * bytes * (other + own)};
@@ -145,7 +145,7 @@ class Budget {
                std::min(kVertexBytes * num_vertices_, kSparseVertexBytes * moved);
     }
     bytes_ += bytes;
-    of_target_ = bytes / count;
+    target_bytes_ = bytes / count;
   }
 
  private:
@@ -157,7 +157,7 @@ class Budget {
   double num_frames_;
   double weights_;  // bytes of the weights of a target
   double bytes_ = 0;
-  double of_target_ = 0;
+  double target_bytes_ = 0;
 };
 
 // RMS of the residual to aim at, and RMS by which shapes are thinned out.
@@ -179,11 +179,11 @@ PrincipalShapes shapes_of(MatrixXf& moves, const Aim& aim, std::size_t max_targe
   shapes.has_short_weights = rms > 2 * 127 * unit * kWeightUnit;
   Budget budget(price, moves, shapes.has_short_weights);
   double left = moves.cast<double>().squaredNorm();
-  const auto most = static_cast<Index>(max_targets);
-  while (left > wanted && shapes.targets.cols() < most) {
+  const auto max = static_cast<Index>(max_targets);
+  while (left > wanted && shapes.targets.cols() < max) {
     MatrixXf block = principal_columns(moves, 61 * shapes.targets.cols());
     Index room = 0;
-    const Index columns = std::min(block.cols(), most - shapes.targets.cols());
+    const Index columns = std::min(block.cols(), max - shapes.targets.cols());
     while (room < columns && round_to_bytes(block.col(room), unit)) ++room;
     // Keeps as few shapes of the block as suffice, or as many as are worth their price.
     block.conservativeResize(Eigen::NoChange, room);
@@ -192,17 +192,17 @@ PrincipalShapes shapes_of(MatrixXf& moves, const Aim& aim, std::size_t max_targe
     MatrixXd weights;
     Index count = 0;
     Index tried = 0;
-    std::array<double, 2> least = budget.loss(0, left);
+    std::array<double, 2> min_loss = budget.loss(0, left);
     for (double rest = left; tried < room && rest > wanted;) {
       ++tried;
       const auto some = products.topRows(tried);
-      const MatrixXd of_some = squares.topLeftCorner(tried, tried).ldlt().solve(some);
-      rest = left - of_some.cwiseProduct(some).sum();
+      const MatrixXd solution = squares.topLeftCorner(tried, tried).ldlt().solve(some);
+      rest = left - solution.cwiseProduct(some).sum();
       const auto loss = budget.loss(tried, rest);
-      if (!(loss < least)) continue;
-      least = loss;
+      if (!(loss < min_loss)) continue;
+      min_loss = loss;
       count = tried;
-      weights = of_some;
+      weights = solution;
     }
     if (count == 0) break;
     block.conservativeResize(Eigen::NoChange, count);

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kMostSweeps = 8;
+constexpr int kMaxSweeps = 8;
 constexpr double kEnoughGain = 0.98;  // ratio of the sums of squares after and before a sweep
 // Weight with which a joint with too few vertices to determine its rotation keeps the old one.
 constexpr double kInertia = 1e-4;
@@ -82,7 +82,7 @@ class PoseFit {
   void fit(const std::vector<float>& xyz, JointMaps& maps) {
     start(xyz, maps);
     double before = squares(xyz);
-    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
       for (std::size_t j = 0; j < maps.size(); ++j) fit_joint(xyz, j, maps[j]);
       const double after = squares(xyz);
       if (after > kEnoughGain * before) break;

@@ -212,12 +212,12 @@ class SkinNormalMaker {
     FrameNormals& bones;  // normals where several bones bend them; others turn with their joint
   };
 
-  FrameNormals normals_where(const std::vector<bool>& of_vertices) const {
+  FrameNormals normals_where(const std::vector<bool>& is_chosen) const {
     FrameNormals some = look_.frame_normals();
     Vector<std::uint8_t> is_wanted(some.count());
     const auto normals = look_.normal_of_vertex();
     for (std::size_t i = 0; i < vertex_.size(); ++i) {
-      if (of_vertices[vertex_[i]]) is_wanted[normals[i]] = 1;
+      if (is_chosen[vertex_[i]]) is_wanted[normals[i]] = 1;
     }
     some.restrict_to(std::move(is_wanted));
     return some;
@@ -310,13 +310,13 @@ MatrixXf rows_of(const MatrixXf& all, const std::vector<Index>& vertices) {
   return some;
 }
 
-// Returns the vertices that move by more than `least` in a frame; adds the squares of the
+// Returns the vertices that move by more than `min` in a frame; adds the squares of the
 // others to other_squares.
-std::vector<Index> moving_vertices(const MatrixXf& moves, double least, double& other_squares) {
+std::vector<Index> moving_vertices(const MatrixXf& moves, double min, double& other_squares) {
   std::vector<Index> vertices;
   for (Index v = 0; v < moves.rows() / 3; ++v) {
     const auto rows = moves.middleRows<3>(3 * v);
-    if (std::sqrt(rows.colwise().squaredNorm().maxCoeff()) > static_cast<float>(least)) {
+    if (std::sqrt(rows.colwise().squaredNorm().maxCoeff()) > static_cast<float>(min)) {
       vertices.push_back(v);
     } else {
       other_squares += rows.cast<double>().squaredNorm();

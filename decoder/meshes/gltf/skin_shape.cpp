@@ -129,8 +129,8 @@ std::vector<float> best_rest(const SkinInfluences& influences, std::span<const J
   // Sums that all vertices of a single joint share.
   std::vector<Matrix3d> squares_of_joint(maps[0].size(), Matrix3d::Zero());
   for (std::size_t j = 0; j < squares_of_joint.size(); ++j) {
-    for (const JointMaps& of_frame : maps) {
-      const Matrix3d turn = of_frame[j].leftCols<3>();
+    for (const JointMaps& frame_maps : maps) {
+      const Matrix3d turn = frame_maps[j].leftCols<3>();
       squares_of_joint[j] += turn.transpose() * turn;
     }
   }
@@ -156,14 +156,14 @@ Eigen::MatrixXf missing_moves(const SkinInfluences& influences, std::span<const 
                               std::span<const float> rest, ShownFrames frames) {
   Eigen::MatrixXf moves(static_cast<Index>(rest.size()), static_cast<Index>(frames.size()));
   for_each(frames.size(), [&](std::size_t f) {
-    const std::vector<MoveSolver> of_joints(maps[f].begin(), maps[f].end());
+    const std::vector<MoveSolver> joint_solvers(maps[f].begin(), maps[f].end());
     for (std::size_t v = 0; v < rest.size() / 3; ++v) {
       const JointMap map = map_of(influences, v, maps[f]);
       const Vector3d missing =
           vector_at(frames[f], v) - map.leftCols<3>() * vector_at(rest, v) - map.col(3);
       const auto joint = only_joint(influences, v);
       const Vector3d move =
-          joint ? of_joints[*joint].at_rest(missing) : MoveSolver(map).at_rest(missing);
+          joint ? joint_solvers[*joint].at_rest(missing) : MoveSolver(map).at_rest(missing);
       moves.block<3, 1>(static_cast<Index>(3 * v), static_cast<Index>(f)) = move.cast<float>();
     }
   });
@@ -186,10 +186,10 @@ SkinError skin_error(const SkinInfluences& influences, std::span<const JointMaps
   SkinError error;
   double squares = 0;
   double spread = 0;
-  for (const FrameError& of_frame : errors) {
-    squares += of_frame.squares;
-    spread += of_frame.spread;
-    error.largest = std::max(error.largest, std::sqrt(of_frame.largest_square));
+  for (const FrameError& frame_error : errors) {
+    squares += frame_error.squares;
+    spread += frame_error.spread;
+    error.largest = std::max(error.largest, std::sqrt(frame_error.largest_square));
   }
   error.rms = std::sqrt(squares / (num_vertices * static_cast<double>(frames.size())));
   if (spread > 0) error.kg_percent = 100 * std::sqrt(squares / spread);

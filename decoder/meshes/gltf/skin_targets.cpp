@@ -35,7 +35,7 @@ void add_targets(GltfJson& targets, const PrincipalShapes& shapes, const char* p
     for (const float x : shapes.targets.col(k)) {
       bytes.push_back(static_cast<std::int8_t>(std::lround(x / shapes.unit)));
     }
-    if (expand != nullptr) bytes = of_output_vertices<std::int8_t>(*expand, bytes, 3);
+    if (expand != nullptr) bytes = expanded_values<std::int8_t>(*expand, bytes, 3);
     targets.push_back({{path, buffers.add_byte_vectors(bytes, shapes.unit < 1)}});
   }
 }
@@ -43,10 +43,11 @@ void add_targets(GltfJson& targets, const PrincipalShapes& shapes, const char* p
 }  // namespace
 
 TargetTrack target_track(const SkinTargets& targets, const Clip& clip, double tolerance) {
-  const auto of_clip = [&](const PrincipalShapes& shapes) {
+  const auto clip_weights = [&](const PrincipalShapes& shapes) {
     return shapes.weights.middleCols(clip.first_frame, clip.num_frames);
   };
-  const Eigen::MatrixXf weights = stacked(of_clip(targets.places), of_clip(targets.normals));
+  const Eigen::MatrixXf weights =
+      stacked(clip_weights(targets.places), clip_weights(targets.normals));
   Eigen::VectorXf costs(weights.rows());
   costs << lengths_of(targets.places) / static_cast<float>(tolerance),
       lengths_of(targets.normals) / static_cast<float>(kNormalTolerance);

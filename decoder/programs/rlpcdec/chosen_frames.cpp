@@ -10,13 +10,13 @@ namespace {
 
 std::string no_such_clip(const std::string& name, std::span<const Clip> clips) {
   if (clips.empty()) return "--clip: the stream has no clips; use --frames";
-  constexpr std::size_t kMost = 20;
+  constexpr std::size_t kMax = 20;
   std::string names;
-  for (std::size_t i = 0; i < clips.size() && i < kMost; ++i) {
+  for (std::size_t i = 0; i < clips.size() && i < kMax; ++i) {
     names += (i > 0 ? ", `" : "`") + printable(clips[i].name) + "`";
   }
   return "--clip: no clip `" + name + "`; expected one of " + names +
-         (clips.size() > kMost ? ", ..." : "");
+         (clips.size() > kMax ? ", ..." : "");
 }
 
 }  // namespace

@@ -131,11 +131,11 @@ std::string range_over(const Summaries& list, std::size_t place) {
     return summary->figures[place].value;
   };
   const auto compare = [&](const auto& a, const auto& b) { return value(a) < value(b); };
-  const auto [least, most] = std::minmax_element(list.begin(), list.end(), compare);
-  const GofFigure& figure = (*most)->figures[place];
-  const std::string most_counted = counted(figure.value, {figure.one, figure.many});
-  return value(*least) == figure.value ? most_counted
-                                       : std::to_string(value(*least)) + " to " + most_counted;
+  const auto [min, max] = std::minmax_element(list.begin(), list.end(), compare);
+  const GofFigure& figure = (*max)->figures[place];
+  const std::string max_counted = counted(figure.value, {figure.one, figure.many});
+  return value(*min) == figure.value ? max_counted
+                                     : std::to_string(value(*min)) + " to " + max_counted;
 }
 
 // Formats a list: "a", "a and b", "a, b and c".

@@ -55,14 +55,14 @@ class Node(InFolder):
         if native.triangles:
             self.assertEqual(result["triangles"], hashlib.sha256(native.triangles).hexdigest())
 
-    def of_suite(self, version):
+    def suite_streams(self, version):
         entries = json.loads((STREAMS / version / "SUITE.json").read_text())["streams"]
         return {expect: [STREAMS / version / entry["path"] for entry in entries
                          if entry["expect"] == expect and entry["tier"] != "stress"]
                 for expect in ("accept", "reject")}
 
     def check_suite(self, version):
-        streams = self.of_suite(version)
+        streams = self.suite_streams(version)
         self.assertGreater(min(map(len, streams.values())), 30)
         for result in self.compare(streams["accept"]):
             self.assertNotIn("error", result, result["path"])
@@ -78,7 +78,7 @@ class Node(InFolder):
     def test_the_streams_of_version_1_2(self):
         """But those that are rejected: of a stream with an open end, nothing tells the number of
         frames if its end is damaged."""
-        for result in self.compare(self.of_suite("v1.2")["accept"]):
+        for result in self.compare(self.suite_streams("v1.2")["accept"]):
             self.assertNotIn("error", result, result["path"])
 
     def test_streams_of_the_encoder(self):

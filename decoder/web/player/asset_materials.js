@@ -3,7 +3,7 @@
 import { glbChunks, glbJson } from "../package/src/glb.js";
 import { uvName } from "../package/src/sets.js";
 
-const kMostPixels = 4096; // of a side of a texture; larger ones are scaled down
+const kMaxPixels = 4096; // of a side of a texture; larger ones are scaled down
 const kWhite = [1, 1, 1, 1];
 
 function numbers(value, count, usual) {
@@ -34,7 +34,7 @@ async function pictureOf(blob) {
   const options = { colorSpaceConversion: "none", premultiplyAlpha: "none" };
   const picture = await createImageBitmap(blob, options);
   const { width, height } = picture;
-  const scale = kMostPixels / Math.max(width, height);
+  const scale = kMaxPixels / Math.max(width, height);
   if (scale >= 1) return picture;
   try {
     return await createImageBitmap(picture, { ...options, resizeWidth: Math.ceil(scale * width),

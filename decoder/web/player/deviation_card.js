@@ -23,10 +23,10 @@ export class DeviationCard {
       ? this.difference ?? ""
       : `The reference cannot be decoded: ${referenceError.message}`;
     this.largest = Math.max(this.largest, largest);
-    const most = roundedUp(this.largest * this.unit);
-    viewer.set({ deviationScale: this.isShown && distances ? most / this.unit : 0 });
+    const max = roundedUp(this.largest * this.unit);
+    viewer.set({ deviationScale: this.isShown && distances ? max / this.unit : 0 });
     if (!distances) return;
-    $("deviation-most").textContent = digits(most);
+    $("deviation-most").textContent = digits(max);
     $("deviation-frame").textContent =
       `largest ${digits(largest * this.unit)}, RMS ${digits(rms * this.unit)}`;
   }

@@ -12,13 +12,13 @@ export function digits(value, count = 3) {
   return String(Number(value.toPrecision(count)));
 }
 
-export function ofSize(bytes) {
+export function sizeText(bytes) {
   const rounded = Number(bytes.toPrecision(3)); // first: 999 600 bytes are 1 MB, not 1000 kB
   const step = kSizes.findLast(([size]) => rounded >= size) ?? kSizes[0];
   return `${digits(rounded / step[0])} ${step[1]}`;
 }
 
-export function ofTime(ms) {
+export function timeText(ms) {
   return ms < 10 ? `${digits(ms, 2)} ms` : `${grouped(ms)} ms`;
 }
 
@@ -31,7 +31,7 @@ export function streamFacts({
   return [
     ["Mesh", `${grouped(vertices)} vertices, ${grouped(triangles)} triangles`],
     ["Frames", `${grouped(frames)} at ${perSecond} per second, ${duration.toFixed(1)} s`],
-    ["Size", `${ofSize(bytes)}, floats have ${ofSize(12 * vertices * frames)}`],
+    ["Size", `${sizeText(bytes)}, floats have ${sizeText(12 * vertices * frames)}`],
     ["Rate", `${digits(rate)} bits per vertex and frame`],
     ["Profile", `${profile}, level ${level}`],
     ["Decoding", ""],

@@ -54,13 +54,13 @@ export class FrameStates {
     for (let x = 0; x < width; ++x) {
       const first = from + Math.floor((x * count) / width);
       const last = Math.max(first + 1, from + Math.floor(((x + 1) * count) / width));
-      let least = State.error;
-      let most = State.open;
+      let min = State.error;
+      let max = State.open;
       for (let f = first; f < last; ++f) {
-        least = Math.min(least, states[f]);
-        most = Math.max(most, states[f]);
+        min = Math.min(min, states[f]);
+        max = Math.max(max, states[f]);
       }
-      context.fillStyle = kColours[most >= State.differs ? most : least];
+      context.fillStyle = kColours[max >= State.differs ? max : min];
       context.fillRect(x, 0, 1, 1);
     }
   }

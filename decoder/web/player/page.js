@@ -4,7 +4,7 @@ import { Viewer, kRampCss } from "../viewer/viewer.js";
 import { addControls, kWireModes, showClips, showToggles } from "./controls.js";
 import { DeviationCard } from "./deviation_card.js";
 import { embeddedDecoder, embeddedStream } from "./embedded.js";
-import { grouped, ofSize, ofTime, showState, streamFacts } from "./facts.js";
+import { grouped, sizeText, timeText, showState, streamFacts } from "./facts.js";
 import { FrameStates } from "./frame_states.js";
 import { StreamSession } from "./stream_session.js";
 
@@ -172,7 +172,7 @@ class Player {
     $("progress").hidden = isWhole;
     $("progress").style.width = `${(100 * loaded) / Math.max(total, 1)}%`;
     if (!isWhole && document.body.dataset.state === "loading") {
-      this.say(`Loading … ${ofSize(loaded)} of ${ofSize(total)}`);
+      this.say(`Loading … ${sizeText(loaded)} of ${sizeText(total)}`);
     }
   }
 
@@ -188,7 +188,7 @@ class Player {
       error: this.errors.get(frame), checkError: this.checkError,
     });
     const { sum, frames } = this.ms;
-    $("fact-list").lastChild.textContent = frames > 0 ? `${ofTime(sum / frames)} a frame` : "";
+    $("fact-list").lastChild.textContent = frames > 0 ? `${timeText(sum / frames)} a frame` : "";
   }
 
   say(text) {

@@ -311,8 +311,8 @@ class Browser(InBrowser):
     @staticmethod
     def hue(colour):
         """red, green, blue, or grey."""
-        most, least = max(colour), min(colour)
-        return "grey" if most - least < 50 else ("red", "green", "blue")[colour.index(most)]
+        highest, lowest = max(colour), min(colour)
+        return "grey" if highest - lowest < 50 else ("red", "green", "blue")[colour.index(highest)]
 
     def test_a_texture_and_without_it(self):
         self.open(self.encode_box("box"), "frame=0")

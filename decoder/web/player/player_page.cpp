@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 // Placeholder for streams in the player.
 constexpr std::string_view kPlace = "<!-- rlpcdec: streams -->";
 // Maximum size of a player page; larger files are not players.
-constexpr std::size_t kMostPlayerBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxPlayerBytes = std::size_t{64} << 20;
 // Bytes per element: streams are split, because browsers limit the length of strings. A
 // multiple of 3, so that only the last element has base64 padding.
 constexpr std::size_t kPartBytes = std::size_t{3} << 20;
@@ -62,7 +62,7 @@ OutputResult<std::string> read_player(const std::string& path) {
   std::vector<fs::path> places{path};
   if (path.empty()) places = places_of_player();
   for (const fs::path& place : places) {
-    auto text = read_small_file(place.string(), kMostPlayerBytes);
+    auto text = read_small_file(place.string(), kMaxPlayerBytes);
     if (!text) continue;
     if (text->find(kPlace) != std::string::npos) return std::move(*text);
     return OutputError{place.string() + ": not the page that scripts/player builds"};

@@ -5,7 +5,7 @@ import { readMaterials } from "./asset_materials.js";
 import { vertexDistances } from "./distances.js";
 
 /** Maximum number of frames kept to reuse their arrays. */
-const kMostSpare = 4;
+const kMaxSpare = 4;
 
 /** Returns the look for Viewer.setMesh(), from the names of attributes. */
 function lookOf({ attributes }, parts) {
@@ -122,7 +122,7 @@ export class StreamSession {
   /** Returns the box of the coordinates, which are relative to the centre. */
   boxOf({ bounds }) {
     const scale = 2 ** (1 - this.decoder.info.positionBits) / this.decoder.gridStep;
-    const half = bounds.max.map((most, axis) => ((most - bounds.min[axis]) * scale) / 2);
+    const half = bounds.max.map((max, axis) => ((max - bounds.min[axis]) * scale) / 2);
     return { min: half.map((value) => -value), max: half };
   }
 
@@ -144,7 +144,7 @@ export class StreamSession {
 
   /** Keeps a frame that is no longer shown, to reuse its arrays. */
   recycle(frame) {
-    if (this.spare.length < kMostSpare) this.spare.push(frame);
+    if (this.spare.length < kMaxSpare) this.spare.push(frame);
   }
 
   /** Loads the whole stream, which is a blob from then on. */

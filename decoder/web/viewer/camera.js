@@ -110,8 +110,8 @@ export class Camera {
   }
 
   zoom(factor) {
-    const [least, most] = [0.05 * this.fitted, 20 * this.fitted];
-    this.distance = Math.max(least, Math.min(most, this.distance * factor));
+    const [min, max] = [0.05 * this.fitted, 20 * this.fitted];
+    this.distance = Math.max(min, Math.min(max, this.distance * factor));
   }
 
   /** Handles input: drag to turn, shift or the right button to move, wheel to zoom; two fingers

@@ -27,9 +27,9 @@ const kBoxes = [
   { centre: [7, 0, 0], halfSize: [0.5, 0, 0.1] },
 ];
 
-function framed(camera, box, least = 0.8) {
+function framed(camera, box, min = 0.8) {
   const [left, right, bottom, top] = seen(camera, corners(box));
-  assert.ok(Math.max(right - left, top - bottom) / 2 > least, [left, right, bottom, top]);
+  assert.ok(Math.max(right - left, top - bottom) / 2 > min, [left, right, bottom, top]);
   for (const edge of [-left, right, -bottom, top]) assert.ok(edge < 1, [left, right, bottom, top]);
 }
 

@@ -8,16 +8,16 @@ export { Camera } from "./camera.js";
 export { kRampCss } from "./shaders.js";
 
 const kShadowPixels = 2048;
-const kMostShadowTriangles = 2e6; // beyond it, drawing a shadow takes too long
+const kMaxShadowTriangles = 2e6; // beyond it, drawing a shadow takes too long
 const kAttributes =
   ["position", "normal", "deviation", "tint", "uv", "normalUv", "emissionUv"];
 const kKey = viewAxes(0.755, 0.876); // axes of the lights; the last one points to the light
 const kRim = viewAxes(-2.455, 0.38);
 
-/** Returns at most `most` vertices, [x, y, z]. */
-function sampled(coordinates, most = 5000) {
+/** Returns at most `max` vertices, [x, y, z]. */
+function sampled(coordinates, max = 5000) {
   const numVertices = coordinates.length / 3;
-  const every = Math.ceil(numVertices / most);
+  const every = Math.ceil(numVertices / max);
   return Array.from({ length: Math.ceil(numVertices / every) }, (_, i) =>
     [...coordinates.subarray(3 * every * i, 3 * every * i + 3)]);
 }
@@ -267,7 +267,7 @@ export class Viewer {
 
   hasShadow() {
     return this.wire !== "alone" && this.numCorners > 0 &&
-      this.numCorners / 3 <= kMostShadowTriangles;
+      this.numCorners / 3 <= kMaxShadowTriangles;
   }
 
   /** Draws if something has changed. */

@@ -194,7 +194,7 @@ RLPC_EXPORT(stream_coordinates) const float* stream_coordinates(Stream* stream) 
 // Returns the extent in grid units: three minima, then three maxima.
 RLPC_EXPORT(stream_extent) const std::int32_t* stream_extent(Stream* stream) {
   stream->extent = rlpc::extent_of(stream->decoder.positions());
-  return stream->extent.least.data();
+  return stream->extent.min.data();
 }
 
 RLPC_EXPORT(stream_normals) const float* stream_normals(Stream* stream) {

@@ -36,14 +36,14 @@ Vec3f unit(const Vec3f& n) {
 FrameExtent extent_of(std::span<const std::int32_t> positions) {
   FrameExtent extent;
   for (std::size_t c = 0; c < 3; ++c) {
-    std::int32_t least = positions[c];
-    std::int32_t most = positions[c];
+    std::int32_t min = positions[c];
+    std::int32_t max = positions[c];
     for (std::size_t i = c; i < positions.size(); i += 3) {
-      least = std::min(least, positions[i]);
-      most = std::max(most, positions[i]);
+      min = std::min(min, positions[i]);
+      max = std::max(max, positions[i]);
     }
-    extent.least[c] = least;
-    extent.most[c] = most;
+    extent.min[c] = min;
+    extent.max[c] = max;
   }
   return extent;
 }
@@ -53,7 +53,7 @@ void centred_coordinates(std::span<const std::int32_t> positions, const FrameExt
   const double scale = std::ldexp(1.0, 1 - position_bits);
   std::array<double, 3> middle{};
   for (std::size_t c = 0; c < 3; ++c) {
-    middle[c] = std::midpoint<double>(extent.least[c], extent.most[c]);
+    middle[c] = std::midpoint<double>(extent.min[c], extent.max[c]);
   }
   for (std::size_t i = 0; i < positions.size(); i += 3) {
     for (std::size_t c = 0; c < 3; ++c) {

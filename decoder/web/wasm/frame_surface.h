@@ -13,8 +13,8 @@ namespace rlpc {
 
 // Smallest box of the grid that holds all vertices.
 struct FrameExtent {
-  std::array<std::int32_t, 3> least{};
-  std::array<std::int32_t, 3> most{};
+  std::array<std::int32_t, 3> min{};
+  std::array<std::int32_t, 3> max{};
 };
 // Returns the extent. positions: [num_vertices][3], at least one vertex.
 FrameExtent extent_of(std::span<const std::int32_t> positions);

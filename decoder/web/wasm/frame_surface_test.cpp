@@ -59,8 +59,8 @@ TEST(EdgesOf, ListsEachEdgeOnce) {
 
 TEST(ExtentOf, HoldsAllVertices) {
   const FrameExtent extent = extent_of(std::vector<std::int32_t>{5, -10, 0, -2, 0, 20});
-  EXPECT_EQ(extent.least, (std::array<std::int32_t, 3>{-2, -10, 0}));
-  EXPECT_EQ(extent.most, (std::array<std::int32_t, 3>{5, 0, 20}));
+  EXPECT_EQ(extent.min, (std::array<std::int32_t, 3>{-2, -10, 0}));
+  EXPECT_EQ(extent.max, (std::array<std::int32_t, 3>{5, 0, 20}));
 }
 
 TEST(CentredCoordinates, AreInvariantUnderTranslation) {

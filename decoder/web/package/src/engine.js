@@ -21,7 +21,7 @@ import { MissingBytes, WasmDecoder } from "./wasm_decoder.js";
 
 const kTailBytes = 4096; // usually holds the GOF index
 const kBlockBytes = 16384; // loaded at least, without an index
-const kMostBlockBytes = 1 << 20; // largest of consecutive blocks, each twice as large
+const kMaxBlockBytes = 1 << 20; // largest of consecutive blocks, each twice as large
 const kSparseBytes = 1024; // block for a coarse mesh, which omits most slices
 const kStepBytes = 1 << 20; // step of a stream that is loaded whole
 const kUnitHeaderBytes = 5; // header of the next unit, which ends an access unit
@@ -127,7 +127,7 @@ class OpenStream {
   blockEnd(start) {
     const { start: before, bytes } = this.block;
     const follows = start >= before + bytes && start < before + 2 * bytes;
-    this.block = { start, bytes: follows ? Math.min(2 * bytes, kMostBlockBytes) : kBlockBytes };
+    this.block = { start, bytes: follows ? Math.min(2 * bytes, kMaxBlockBytes) : kBlockBytes };
     return start + this.block.bytes;
   }
 
@@ -166,8 +166,8 @@ class OpenStream {
     const result = { ms: performance.now() - start, error: decoder.hashError(),
       compared: decoder.comparedFrames(), crc: decoder.crc(), extent: decoder.extent() };
     for (const name of wants) {
-      result[name] = drawn ? look.ofFrame(name, spare[name])
-        : decoder.ofFrame(name, numVertices, undefined, spare[name]);
+      result[name] = drawn ? look.frameValues(name, spare[name])
+        : decoder.frameValues(name, numVertices, undefined, spare[name]);
     }
     if (tolerant && frame + 1 === numFrames && !this.endIsChecked && !result.error) {
       try {

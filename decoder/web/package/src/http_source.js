@@ -3,14 +3,14 @@ import { ByteRanges } from "./byte_ranges.js";
 import { aborted, RlpcError } from "./error.js";
 
 const kFirstBytes = 16384;
-const kMostCachedBytes = 256e6;
+const kMaxCachedBytes = 256e6;
 
 export class HttpSource {
   /** headers: [name, value] for each request; credentials: see fetch(); maxBytes: limit of a stream
    * that must be loaded whole; progress(loaded, size): callback. */
   constructor({ url, headers, credentials, maxBytes }, progress) {
     Object.assign(this, { url, headers, credentials, maxBytes, progress });
-    this.ranges = new ByteRanges(kMostCachedBytes);
+    this.ranges = new ByteRanges(kMaxCachedBytes);
     this.underWay = []; // { start, end, done }
     this.loaded = 0; // bytes from the server
     this.size = undefined;

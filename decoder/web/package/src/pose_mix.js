@@ -22,7 +22,7 @@ export class PoseMix {
     this.interpolates = playback.interpolates;
     this.isComplete = true;
     let sum = 0;
-    let most = 0;
+    let max = 0;
     for (let slot = 0; slot < this.poses.length; ++slot) {
       const pose = this.poses[slot];
       if (pose.weight < kNothing) {
@@ -31,16 +31,16 @@ export class PoseMix {
       }
       sum += pose.weight;
       const index = this.addPose(mix, pose, this.stream.slots[slot]);
-      if (index === undefined || pose.weight <= most) continue;
+      if (index === undefined || pose.weight <= max) continue;
       this.index = index;
-      ({ weight: most } = pose);
+      ({ weight: max } = pose);
     }
     this.hasPoses = sum > 0;
     const rest = 1 - sum;
     if (rest >= kNothing) {
       this.isComplete &&= playback.isReady;
       const index = base && this.addBase(mix, playback, base, rest);
-      if (base && rest > most) this.index = index;
+      if (base && rest > max) this.index = index;
     }
     mix.normalise();
   }

@@ -44,16 +44,16 @@ export function hasNormals(sets) {
 }
 
 /** Sorts triangles by material: { indices, groups }, groups with start, count and material.
- * materialOf: from materialSet(), or undefined if all have the first. Numbers from `most` on mean
- * no material, and become `most`. */
-export function byMaterial(indices, materialOf, most) {
+ * materialOf: from materialSet(), or undefined if all have the first. Numbers from `max` on mean
+ * no material, and become `max`. */
+export function byMaterial(indices, materialOf, max) {
   const count = indices.length / 3;
   const hasMaterials = materialOf?.domain === "triangle" && materialOf.components === 1;
-  const numberOf = (t) => Math.min(hasMaterials ? materialOf.integers[t] : 0, most);
-  const starts = new Uint32Array(most + 2);
+  const numberOf = (t) => Math.min(hasMaterials ? materialOf.integers[t] : 0, max);
+  const starts = new Uint32Array(max + 2);
   for (let t = 0; t < count; ++t) starts[numberOf(t) + 1] += 3;
-  for (let m = 0; m <= most; ++m) starts[m + 1] += starts[m];
-  const groups = Array.from({ length: most + 1 }, (_, material) =>
+  for (let m = 0; m <= max; ++m) starts[m + 1] += starts[m];
+  const groups = Array.from({ length: max + 1 }, (_, material) =>
     ({ start: starts[material], count: starts[material + 1] - starts[material], material }))
     .filter((group) => group.count > 0);
   const sorted = new Uint32Array(indices.length);

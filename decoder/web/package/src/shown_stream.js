@@ -9,7 +9,7 @@ import { FrameStore } from "./frame_store.js";
 import { byMaterial } from "./sets.js";
 import { dispose, setAttributes } from "./three_look.js";
 
-const kMostAhead = 8; // frames that a mesh requests before they are shown
+const kMaxAhead = 8; // frames that a mesh requests before they are shown
 
 /** Geometry to fill with frames. places: the vertex of the frames for each of its vertices, or
  * undefined. All meshes that show this level share triangles and attributes. */
@@ -47,7 +47,7 @@ export class ShownStream {
   /** Number of frames that each mesh requests before they are shown. */
   get ahead() {
     const fair = Math.floor(this.frames.capacity / (4 * Math.max(1, this.meshes.size)));
-    return Math.min(kMostAhead, Math.max(1, fair));
+    return Math.min(kMaxAhead, Math.max(1, fair));
   }
 
   /** Calls all that wait for a frame. */

@@ -17,13 +17,13 @@ class BytesSource {
   async load() {}
 }
 
-const kMostCachedBytes = 256e6;
+const kMaxCachedBytes = 256e6;
 
 class BlobSource {
   constructor(blob) {
     this.blob = blob;
     this.size = blob.size;
-    this.ranges = new ByteRanges(kMostCachedBytes);
+    this.ranges = new ByteRanges(kMaxCachedBytes);
   }
 
   async open() {}
@@ -44,7 +44,7 @@ class BlobSource {
 class FileSource {
   constructor(url) {
     this.url = new URL(url);
-    this.ranges = new ByteRanges(kMostCachedBytes);
+    this.ranges = new ByteRanges(kMaxCachedBytes);
   }
 
   async open() {

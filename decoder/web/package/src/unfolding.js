@@ -4,7 +4,7 @@
 // a seam, a similarity aligns the texture of the far side with that of the near side.
 
 const kCrossingSteps = 1; // additional cost of a step across a seam
-const kMostSteps = 1 << 12; // triangles that one walk visits
+const kMaxSteps = 1 << 12; // triangles that one walk visits
 const kLargestScale = 4; // largest scale of a similarity; beyond it, sides are only moved
 
 /** Map z -> factor * z + move, or factor * conj(z) + move, of complex numbers. */
@@ -87,7 +87,7 @@ export class Unfolding {
       for (const [triangle, maps] of buckets[steps] ?? []) {
         if (this.visited[triangle] === walk) continue;
         this.visited[triangle] = walk;
-        if (++visits > kMostSteps) return undefined;
+        if (++visits > kMaxSteps) return undefined;
         for (let corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
           const drawn = this.indices[corner];
           targets.forEach((target, i) => {

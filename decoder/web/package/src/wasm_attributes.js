@@ -61,7 +61,7 @@ export class WasmAttributes {
   }
 
   /** Returns an array of the frame that was decoded last, at the drawn vertices. */
-  ofFrame(name, into) {
+  frameValues(name, into) {
     const { stream } = this;
     this.numDrawn ??= this.ask("stream_num_drawn");
     this.numNormals ??= this.ask("stream_num_set_normals");
@@ -71,7 +71,7 @@ export class WasmAttributes {
         into);
     }
     this.vertices ??= stream.copy(Uint32Array, "stream_drawn_vertices", this.numDrawn);
-    return stream.ofFrame(name, this.numVertices, this.vertices, into);
+    return stream.frameValues(name, this.numVertices, this.vertices, into);
   }
 
   /** Reads the asset; null if the stream has none. */

@@ -126,7 +126,7 @@ class WasmStream {
 
   /** Returns an array of the frame that was decoded last. places: vertices to return, or undefined
    * for all; into: an array to fill, or undefined. */
-  ofFrame(name, numVertices, places, into) {
+  frameValues(name, numVertices, places, into) {
     const [Type, source] = kFrameArrays[name];
     if (!places) return this.copy(Type, source, 3 * numVertices, into);
     return gathered(this.view(Type, source, 3 * numVertices), places, 3, into);

@@ -47,7 +47,7 @@ export class FakeDecoder {
     this.decoded = []; // indices, in order
     this.numAllocated = 0; // frames decoded without arrays to reuse
     this.numInUse = 0; // arrays that callers hold
-    this.mostInUse = 0;
+    this.maxInUse = 0;
     this.failing = new Set();
     this.isClosed = false;
     this.held = undefined; // a list: requests wait until serve()
@@ -66,7 +66,7 @@ export class FakeDecoder {
     const { vertices } = this.info;
     if (!into) {
       ++this.numAllocated;
-      this.mostInUse = Math.max(this.mostInUse, ++this.numInUse);
+      this.maxInUse = Math.max(this.maxInUse, ++this.numInUse);
     }
     const positions = positionsOf(index, vertices);
     // Transferred arrays can no longer be used, as with a worker.

@@ -307,8 +307,8 @@ for (const loop of ["repeat", "once", "pingpong"]) {
         let played = 0;
         for (let j = 0; j < 60; ++j) {
           await settled();
-          const most = hasAll ? 3 : 0.45; // intervals
-          const delta = most * (below(1000) / 1000) / frameRate / Math.abs(playback.speed);
+          const max = hasAll ? 3 : 0.45; // intervals
+          const delta = max * (below(1000) / 1000) / frameRate / Math.abs(playback.speed);
           playback.tick(delta);
           played += delta * Math.abs(playback.speed);
           const off = timeOff(playback, played, loop);

@@ -103,7 +103,7 @@ test("AllClonesAdvanceWithLittleMemory", async () => {
     const place = 30 * ((3 * i + 200 / 60) % (999 / 30));
     assertNear(positions(clone), between(place, 5), 1e-2, `clone ${i}`);
   });
-  assert.ok(decoder.mostInUse <= 30 + 3, `${decoder.mostInUse} frames at once`);
+  assert.ok(decoder.maxInUse <= 30 + 3, `${decoder.maxInUse} frames at once`);
 });
 
 test("NothingIsAllocatedOnceTheMemoryIsFull", async () => {
@@ -194,6 +194,6 @@ test("CrossfadesWithTheLeastMemoryShowNoFrameThatHasLeft", async () => {
   const halves = [30 * ((300 / 120) % (49 / 30)), 50 + 30 * ((0.7 + 300 / 120) % (49 / 30))]
     .map((place) => between(place, 5));
   assertNear(positions(mesh), halves[0].map((x, i) => (x + halves[1][i]) / 2), 1e-2, "the end");
-  assert.ok(decoder.mostInUse <= 8 + 3, `${decoder.mostInUse}`);
+  assert.ok(decoder.maxInUse <= 8 + 3, `${decoder.maxInUse}`);
   assert.ok(decoder.decoded.length < 3 * 150, `${decoder.decoded.length}`);
 });
