@@ -110,8 +110,8 @@ InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSetti
   for (std::uint32_t* count : {&report.num_gofs, &report.clusters, &report.components}) {
     *count = static_cast<std::uint32_t>(std::llround(*count * scale));
   }
-  for (PatternCount& of_pattern : report.patterns) {
-    of_pattern.gofs = static_cast<std::uint32_t>(std::llround(of_pattern.gofs * scale));
+  for (PatternCount& pattern_count : report.patterns) {
+    pattern_count.gofs = static_cast<std::uint32_t>(std::llround(pattern_count.gofs * scale));
   }
   return Expectation{std::move(report), sample.num_frames()};
 }

@@ -40,8 +40,8 @@ InputResult<Found> best_of(FrameSource& source, const EncoderSettings& settings,
   for (const Search& search : searches) all += search.duration;
   double before = 0.0;
   double part = 0.0;
-  const Progress of_search = [&](double done) { progress((before + part * done) / all); };
-  const Progress& shown = searches.size() > 1 && progress ? of_search : progress;
+  const Progress search_progress = [&](double done) { progress((before + part * done) / all); };
+  const Progress& shown = searches.size() > 1 && progress ? search_progress : progress;
   std::optional<Found> best;
   for (const Search& search : searches) {
     before += part;

@@ -61,8 +61,7 @@ struct FilterOfText {
     const int bits = is_of_frames ? 11 : 7;
     const std::int64_t max_error = is_of_frames ? 16384 : 1024;
     const std::int64_t max_spread = is_of_frames ? 1 << 26 : (1 << 22) - 1;
-    const int shift =
-        std::max(floor_log2(static_cast<std::uint64_t>(most_of(offsets))) - 9, 0);
+    const int shift = std::max(floor_log2(static_cast<std::uint64_t>(most_of(offsets))) - 9, 0);
     error = clip3(-max_error, max_error, round2(error, shift));
     List shifted(n);
     for (std::size_t i = 0; i < n; ++i) shifted[i] = round2(offsets[i], shift);
@@ -83,8 +82,7 @@ struct FilterOfText {
     scale = std::max(scale, noise);
     scale += (scale - noise) >> 10;
     ASSERT_LT(scale, std::int64_t{1} << 46);
-    const int narrow =
-        std::max(floor_log2(static_cast<std::uint64_t>(most_of(gain))) - 13, 0);
+    const int narrow = std::max(floor_log2(static_cast<std::uint64_t>(most_of(gain))) - 13, 0);
     const int exponent = floor_log2(static_cast<std::uint64_t>(scale)) - 14;
     const std::int64_t inverse = (1 << 29) / (scale >> exponent);
     ASSERT_LE(inverse, 1 << 15);

@@ -68,8 +68,8 @@ class OneTriangle final : public FrameSource {
 };
 
 std::unique_ptr<FrameSource> turned_triangle(const std::string& axes,
-                                             const std::string& of_mesh = "") {
-  const auto mesh = of_mesh.empty() ? std::nullopt : std::optional(*parse_axes(of_mesh));
+                                             const std::string& mesh_axes = "") {
+  const auto mesh = mesh_axes.empty() ? std::nullopt : std::optional(*parse_axes(mesh_axes));
   return turn_source(std::make_unique<OneTriangle>(mesh), *parse_axes(axes));
 }
 

@@ -64,18 +64,18 @@ std::optional<InputError> FrameSource::read_exact(std::uint32_t frame, std::span
   return std::nullopt;
 }
 
-void FrameSource::limit_attributes(std::size_t most) {
+void FrameSource::limit_attributes(std::size_t max) {
   auto& sets = shape_.attributes.sets;
-  if (sets.size() <= most) return;
+  if (sets.size() <= max) return;
   std::string names;
-  while (sets.size() > most) {
+  while (sets.size() > max) {
     const auto last = std::max_element(
         sets.rbegin(), sets.rend(),
         [](const auto& a, const auto& b) { return number_of(a.name) < number_of(b.name); });
     names = last->name + (names.empty() ? "" : ", ") + names;
     sets.erase(std::prev(last.base()));
   }
-  add_note("dropped " + names + ": a stream has at most " + std::to_string(most) +
+  add_note("dropped " + names + ": a stream has at most " + std::to_string(max) +
            " attributes");
 }
 
@@ -87,10 +87,10 @@ InputResult<FrameRate> parse_frame_rate(std::string_view text) {
 }
 
 std::optional<FrameRate> frame_rate_near(double frames_per_second) {
-  constexpr double kLeast = 2.0;
-  constexpr double kMost = 1000.0;
+  constexpr double kMin = 2.0;
+  constexpr double kMax = 1000.0;
   constexpr double kNear = 1e-4;
-  if (!(frames_per_second >= kLeast && frames_per_second <= kMost)) return std::nullopt;
+  if (!(frames_per_second >= kMin && frames_per_second <= kMax)) return std::nullopt;
   const auto near = [&](double rate) {
     return std::abs(frames_per_second / rate - 1.0) < kNear;
   };

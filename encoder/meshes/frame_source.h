@@ -81,9 +81,9 @@ class FrameSource {
   const std::string& asset() const { return shape_.asset; }
   const SourceMaterials& materials() const { return shape_.materials; }
 
-  // Keeps at most `most` attributes: drops those with the highest numbers in their names, the
+  // Keeps at most `max` attributes: drops those with the highest numbers in their names, the
   // last of equal ones, and adds a note that names them.
-  void limit_attributes(std::size_t most);
+  void limit_attributes(std::size_t max);
 
   // Returns the estimated memory held by the source.
   std::uint64_t memory_bytes() const { return shape_.memory_bytes; }

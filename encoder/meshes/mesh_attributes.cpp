@@ -79,16 +79,16 @@ SourceAttribute normal_attribute(std::vector<float> normals,
     const Vec3 n = unit({normals[i], normals[i + 1], normals[i + 2]});
     std::copy(n.begin(), n.end(), normals.begin() + static_cast<std::ptrdiff_t>(i));
   }
-  std::uint32_t of_face = kNoValue;
+  std::uint32_t face_value = kNoValue;
   for (std::size_t c = 0; c < value_of_corner.size(); ++c) {
-    if (c % 3 == 0) of_face = kNoValue;
+    if (c % 3 == 0) face_value = kNoValue;
     if (value_of_corner[c] != kNoValue && has_length[value_of_corner[c]]) continue;
-    if (of_face == kNoValue) {
-      of_face = static_cast<std::uint32_t>(normals.size() / 3);
+    if (face_value == kNoValue) {
+      face_value = static_cast<std::uint32_t>(normals.size() / 3);
       const Vec3 n = face_normal(xyz, triangles[c / 3]);
       normals.insert(normals.end(), n.begin(), n.end());
     }
-    value_of_corner[c] = of_face;
+    value_of_corner[c] = face_value;
   }
   SourceAttribute set =
       attribute(kNormalName, 3, std::move(normals), std::move(value_of_corner));
@@ -122,7 +122,7 @@ bool are_colours(std::span<const float> values) {
 
 std::optional<SourceAttribute> triangle_attribute(const std::string& name,
                                                   std::span<const std::uint32_t> numbers) {
-  constexpr std::uint32_t kMost = 65535;
+  constexpr std::uint32_t kMax = 65535;
   const auto is_first = [&](std::uint32_t n) { return n == numbers[0]; };
   if (std::all_of(numbers.begin(), numbers.end(), is_first)) return std::nullopt;
   SourceAttribute set{.name = name};
@@ -130,7 +130,7 @@ std::optional<SourceAttribute> triangle_attribute(const std::string& name,
   set.kind = SourceAttribute::Kind::kIntegers;
   set.values.reserve(numbers.size());
   for (const std::uint32_t n : numbers) {
-    set.values.push_back(static_cast<float>(std::min(n, kMost)));
+    set.values.push_back(static_cast<float>(std::min(n, kMax)));
   }
   return set;
 }

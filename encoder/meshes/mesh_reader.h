@@ -37,8 +37,8 @@ struct SingleMesh {
 
 // Parts of a mesh to read, and its memory limits, in addition to the text that it is read from.
 struct MeshLimit {
-  std::uint64_t of_all = kUsualEncoderBytes;  // for messages
-  std::uint64_t of_mesh = kUsualEncoderBytes;
+  std::uint64_t total_bytes = kUsualEncoderBytes;  // for messages
+  std::uint64_t mesh_bytes = kUsualEncoderBytes;
   bool with_attributes = true;  // otherwise they are skipped, not checked
   bool cuts_polygons = true;    // otherwise all are fans from their first corner
 
@@ -47,7 +47,7 @@ struct MeshLimit {
   template <class Holder, class T>
   bool leaves_room(const Holder& holds, const std::vector<T>& grows) const {
     if (grows.size() < grows.capacity()) return true;
-    return holds.memory_bytes() + 2 * std::uint64_t{grows.capacity()} * sizeof(T) <= of_mesh;
+    return holds.memory_bytes() + 2 * std::uint64_t{grows.capacity()} * sizeof(T) <= mesh_bytes;
   }
   // Adds the last triangles of a mesh, from `first` on, as one face. Returns false if that
   // takes too much memory.
@@ -61,7 +61,7 @@ struct MeshLimit {
   // Whether `bytes` more bytes may be held.
   template <class Holder>
   bool leaves_room_for(const Holder& holds, std::uint64_t bytes) const {
-    return holds.memory_bytes() + bytes <= of_mesh;
+    return holds.memory_bytes() + bytes <= mesh_bytes;
   }
 };
 

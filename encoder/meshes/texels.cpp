@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
-constexpr std::size_t kMostSets = 256;  // fixed: memory
+constexpr std::size_t kMaxSets = 256;  // fixed: memory
 
 std::uint32_t u16_be(std::string_view bytes, std::size_t at) {
   return static_cast<std::uint32_t>(static_cast<std::uint8_t>(bytes[at]) << 8 |
@@ -88,7 +88,7 @@ class TexelFinder {
         scale = scale_of(transform);
       }
     }
-    if (set >= kMostSets) return;
+    if (set >= kMaxSets) return;
     if (uses.size() <= set) uses.resize(set + 1);
     UvUse& use = uses[set];
     use.texels =

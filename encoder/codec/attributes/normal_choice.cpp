@@ -56,7 +56,7 @@ std::optional<RestShape> rest_shape(const NormalTask& task) {
 }
 
 // Returns the normals of sectors from those of values; zero: none.
-std::vector<Vec3d> of_sectors(const NormalTask& task, std::span<const float> values) {
+std::vector<Vec3d> sector_normals(const NormalTask& task, std::span<const float> values) {
   std::vector<Vec3d> normals;
   normals.reserve(task.value_of_sector.size());
   for (const std::uint32_t i : task.value_of_sector) {
@@ -82,12 +82,13 @@ std::vector<ComparedFrame> compared_frames(const NormalTask& task,
                                            const std::vector<Vec3d>& at_rest) {
   std::vector<ComparedFrame> frames;
   const std::vector<float>& first = task.source.first_normals;
-  frames.push_back({0, task.first_frame, first.empty() ? at_rest : of_sectors(task, first)});
+  frames.push_back(
+      {0, task.first_frame, first.empty() ? at_rest : sector_normals(task, first)});
   for (const DecodedFrame& later : task.later_frames) {
     const auto found =
         std::ranges::find(task.source.later_normals, later.frame, &PosedNormals::frame);
     if (found == task.source.later_normals.end()) continue;
-    frames.push_back({later.frame, later.positions, of_sectors(task, found->normals)});
+    frames.push_back({later.frame, later.positions, sector_normals(task, found->normals)});
   }
   return frames;
 }
@@ -109,7 +110,7 @@ class Total {
 class NormalPlanner {
  public:
   NormalPlanner(const NormalTask& task, const AttributeSettings& settings)
-      : task_(task), settings_(settings), at_rest_(of_sectors(task, task.values)) {}
+      : task_(task), settings_(settings), at_rest_(sector_normals(task, task.values)) {}
 
   NormalPlan plan() {
     NormalPlan plan;

@@ -13,7 +13,7 @@
 namespace rlpc {
 namespace {
 
-constexpr int kMostBits = 16;
+constexpr int kMaxBits = 16;
 
 struct ValueRange {
   double low = 0.0;
@@ -29,9 +29,9 @@ ValueRange range_of(const SourceAttribute& source, std::uint32_t component) {
   return range;
 }
 
-std::uint32_t bits_for(std::int64_t most) {
+std::uint32_t bits_for(std::int64_t max) {
   return std::max(1U,
-                  static_cast<std::uint32_t>(std::bit_width(static_cast<std::uint64_t>(most))));
+                  static_cast<std::uint32_t>(std::bit_width(static_cast<std::uint64_t>(max))));
 }
 
 void quantise_floats(const SourceAttribute& source, QuantisedAttribute& out) {
@@ -44,12 +44,12 @@ void quantise_floats(const SourceAttribute& source, QuantisedAttribute& out) {
 
 void quantise_integers(const SourceAttribute& source, QuantisedAttribute& out) {
   out.header.kind = ValueKind::kIntegers;
-  std::uint32_t most = source.max_value;
+  std::uint32_t max = source.max_value;
   for (const float value : source.values) {
     out.values.push_back(static_cast<std::uint32_t>(value));
-    if (source.max_value == 0) most = std::max(most, out.values.back());
+    if (source.max_value == 0) max = std::max(max, out.values.back());
   }
-  out.header.value_bits = bits_for(most);
+  out.header.value_bits = bits_for(max);
   if (source.max_value != 0) out.header.scale = ValueScale::kNormalised;
 }
 
@@ -63,21 +63,21 @@ void quantise_numbers(const SourceAttribute& source, int log2_step, QuantisedAtt
     fits = true;
     out.header.log2_step = log2_step;
     const double steps = exact_exp2(-log2_step);
-    std::int64_t most = 0;
+    std::int64_t max = 0;
     for (std::uint32_t c = 0; c < n; ++c) {
       const ValueRange range = range_of(source, c);
       const double low = range.low * steps;
       const double high = range.high * steps;
-      constexpr double kMostOrigin = 1 << 24;
-      if (!(std::abs(low) < kMostOrigin && std::abs(high) < kMostOrigin)) {
+      constexpr double kMaxOrigin = 1 << 24;
+      if (!(std::abs(low) < kMaxOrigin && std::abs(high) < kMaxOrigin)) {
         fits = false;
         break;
       }
       out.header.origin[c] = static_cast<std::int32_t>(round_to_int(low));
-      most = std::max<std::int64_t>(most, round_to_int(high) - out.header.origin[c]);
+      max = std::max<std::int64_t>(max, round_to_int(high) - out.header.origin[c]);
     }
-    fits = fits && most < (std::int64_t{1} << kMostBits);
-    out.header.value_bits = bits_for(most);
+    fits = fits && max < (std::int64_t{1} << kMaxBits);
+    out.header.value_bits = bits_for(max);
   }
   const double steps = exact_exp2(-out.header.log2_step);
   for (std::size_t i = 0; i < source.values.size(); ++i) {
@@ -110,13 +110,13 @@ int log2_step_of_range(const SourceAttribute& source, int bits) {
 // an image of 64 texels 10 times, takes 1.1 kB less of its 3.9 kB of attributes; half or double
 // that part of a texel changes nothing there, nor in the other models, which repeat no image.
 int log2_step_of_uv(const SourceAttribute& source, const AttributeSettings& settings) {
-  constexpr double kStep = 0.25;          // fixed: part of a texel; 12 bits for images of 1024
-  constexpr double kMostScale = 1 << 10;  // fixed: beyond, textures are noise
+  constexpr double kStep = 0.25;         // fixed: part of a texel; 12 bits for images of 1024
+  constexpr double kMaxScale = 1 << 10;  // fixed: beyond, textures are noise
   UvUse use;
   for (std::size_t set = 0; set < settings.uv_uses.size(); ++set) {
     if (source.name == uv_name(static_cast<std::uint32_t>(set))) use = settings.uv_uses[set];
   }
-  const double scale = std::min(use.scale, kMostScale);
+  const double scale = std::min(use.scale, kMaxScale);
   int log2_step = -settings.uv_bits;
   while (exact_exp2(log2_step) * scale > exact_exp2(-settings.uv_bits)) --log2_step;
   if (!(use.texels > 0.0)) return log2_step;
@@ -220,7 +220,7 @@ QuantisedAttribute quantise_attribute(const SourceAttribute& source,
   out.header.domain = source.domain;
   out.header.num_components = source.num_components;
   if (source.kind == SourceAttribute::Kind::kNormals) {
-    quantise_normals(source, settings.exact ? kMostBits : settings.normal_bits, out);
+    quantise_normals(source, settings.exact ? kMaxBits : settings.normal_bits, out);
   } else if (source.kind == SourceAttribute::Kind::kIntegers) {
     quantise_integers(source, out);
   } else if (settings.exact) {

@@ -15,12 +15,12 @@
 namespace rlpc {
 namespace {
 
-// Texture coordinates from 0 to `most`.
-SourceAttribute coordinates(float most, std::string name = "uv0") {
+// Texture coordinates from 0 to `max`.
+SourceAttribute coordinates(float max, std::string name = "uv0") {
   SourceAttribute source;
   source.name = std::move(name);
   source.num_components = 2;
-  source.values = {0.0F, 0.0F, 0.3F * most, most};
+  source.values = {0.0F, 0.0F, 0.3F * max, max};
   return source;
 }
 

@@ -73,26 +73,25 @@ std::vector<double> descending_values(const Eigen::SelfAdjointEigenSolver<Square
   return values;
 }
 
-std::size_t num_wanted(const std::vector<double>& values, std::size_t max_count, double least) {
+std::size_t num_wanted(const std::vector<double>& values, std::size_t max_count, double min) {
   std::size_t wanted = 0;
-  while (wanted < std::min(values.size(), max_count) && values[wanted] > least) ++wanted;
+  while (wanted < std::min(values.size(), max_count) && values[wanted] > min) ++wanted;
   return wanted;
 }
 
 EigenPairs all_eigenvectors(std::span<const double> matrix, std::size_t width,
-                            std::size_t max_count, double least) {
+                            std::size_t max_count, double min) {
   fix_eigen_blocking();
   const Eigen::SelfAdjointEigenSolver<Square> solver(square_of(matrix, width));
   EigenPairs pairs{descending_values(solver), {}};
-  pairs.vectors =
-      last_columns(solver.eigenvectors(), num_wanted(pairs.values, max_count, least));
+  pairs.vectors = last_columns(solver.eigenvectors(), num_wanted(pairs.values, max_count, min));
   return pairs;
 }
 
 // Computes all values, and vectors one at a time: faster unless almost all vectors are wanted.
 // None if they are, or if inverse iteration fails.
 std::optional<EigenPairs> single_eigenvectors(std::span<const double> matrix, std::size_t width,
-                                              std::size_t max_count, double least) {
+                                              std::size_t max_count, double min) {
   fix_eigen_blocking();
   const Eigen::Tridiagonalization<Square> reduced(square_of(matrix, width));
   const Eigen::VectorXd diagonal = reduced.diagonal();
@@ -100,7 +99,7 @@ std::optional<EigenPairs> single_eigenvectors(std::span<const double> matrix, st
   Eigen::SelfAdjointEigenSolver<Square> solver;
   solver.computeFromTridiagonal(diagonal, subdiagonal, Eigen::EigenvaluesOnly);
   EigenPairs pairs{descending_values(solver), {}};
-  const std::size_t wanted = num_wanted(pairs.values, max_count, least);
+  const std::size_t wanted = num_wanted(pairs.values, max_count, min);
   if (wanted >= width) return std::nullopt;
   if (wanted == 0) return pairs;
   const auto vectors =
@@ -133,23 +132,23 @@ class SubspaceIteration {
   }
 
   // Finds the vectors; none if too many are wanted for this method.
-  std::optional<EigenPairs> find(std::size_t max_count, double least) {
+  std::optional<EigenPairs> find(std::size_t max_count, double min) {
     constexpr std::size_t kFirstCount = 16;
-    constexpr double kMargin = 0.5;  // part of `least`; the block grows until a value is below
+    constexpr double kMargin = 0.5;  // part of `min`; the block grows until a value is below
     constexpr std::size_t kMoreCount = 8;
     constexpr std::size_t kTelling = 32;  // fewest values to extrapolate from
-    const std::size_t most = width_ / kFewPart;
-    for (std::size_t count = kFirstCount; count <= most; count *= 2) {
+    const std::size_t max = width_ / kFewPart;
+    for (std::size_t count = kFirstCount; count <= max; count *= 2) {
       widen(count);
       for (int i = 0; i < kRounds; ++i) multiply();
       EigenPairs pairs = rotate();
-      if (pairs.values.back() < kMargin * least || count >= max_count + kMoreCount) {
-        pairs.vectors.resize(num_wanted(pairs.values, max_count, least));
+      if (pairs.values.back() < kMargin * min || count >= max_count + kMoreCount) {
+        pairs.vectors.resize(num_wanted(pairs.values, max_count, min));
         for (auto& v : pairs.vectors) fix_sign(v);
         return pairs;
       }
-      if (count >= kTelling && least > 0.0 &&
-          at_this_rate(pairs.values, least) > static_cast<double>(most)) {
+      if (count >= kTelling && min > 0.0 &&
+          at_this_rate(pairs.values, min) > static_cast<double>(max)) {
         break;
       }
     }
@@ -159,12 +158,12 @@ class SubspaceIteration {
  private:
   static constexpr int kRounds = 6;
 
-  // Extrapolates the number of values above `least` from how fast the second half of the values
+  // Extrapolates the number of values above `min` from how fast the second half of the values
   // falls: between an exponential fall and a power law.
-  static double at_this_rate(const std::vector<double>& values, double least) {
+  static double at_this_rate(const std::vector<double>& values, double min) {
     const std::size_t half = values.size() / 2;
     const double fall = det_log2(values[half] / values.back());
-    const double left = det_log2(values.back() / least);
+    const double left = det_log2(values.back() / min);
     const auto count = static_cast<double>(values.size());
     const double exponential = count + static_cast<double>(half) * left / fall;
     const double power = count * det_exp2(std::min(left / fall, 40.0));
@@ -241,16 +240,16 @@ class SubspaceIteration {
 }  // namespace
 
 EigenPairs leading_eigenvectors(const std::vector<double>& matrix, std::size_t width,
-                                std::size_t max_count, double least) {
+                                std::size_t max_count, double min) {
   if (width >= kWide) {
-    if (auto few = SubspaceIteration(matrix, width).find(max_count, least)) {
+    if (auto few = SubspaceIteration(matrix, width).find(max_count, min)) {
       return std::move(*few);
     }
   }
-  if (auto single = single_eigenvectors(matrix, width, max_count, least)) {
+  if (auto single = single_eigenvectors(matrix, width, max_count, min)) {
     return std::move(*single);
   }
-  return all_eigenvectors(matrix, width, max_count, least);
+  return all_eigenvectors(matrix, width, max_count, min);
 }
 
 }  // namespace rlpc

@@ -18,7 +18,7 @@ namespace {
 class ShiftedFactors {
  public:
   ShiftedFactors(std::span<const double> diagonal, std::span<const double> subdiagonal,
-                 double shift, double least_pivot)
+                 double shift, double min_pivot)
       : rows_(diagonal.size()) {
     const std::size_t n = rows_.size();
     Row row{diagonal[0] - shift, n > 1 ? subdiagonal[0] : 0.0, 0.0};
@@ -30,12 +30,12 @@ class ShiftedFactors {
         std::swap(row.right, next.right);
         std::swap(row.far, next.far);
       }
-      row.pivot = away_from_zero(row.pivot, least_pivot);
+      row.pivot = away_from_zero(row.pivot, min_pivot);
       row.factor = next.pivot / row.pivot;
       rows_[i] = row;
       row = Row{next.right - row.factor * row.right, next.far - row.factor * row.far, 0.0};
     }
-    row.pivot = away_from_zero(row.pivot, least_pivot);
+    row.pivot = away_from_zero(row.pivot, min_pivot);
     rows_.back() = row;
   }
 
@@ -61,8 +61,8 @@ class ShiftedFactors {
     bool exchanged = false;
   };
 
-  static double away_from_zero(double pivot, double least) {
-    return std::abs(pivot) >= least ? pivot : std::copysign(least, pivot);
+  static double away_from_zero(double pivot, double min) {
+    return std::abs(pivot) >= min ? pivot : std::copysign(min, pivot);
   }
 
   std::vector<Row> rows_;
@@ -72,14 +72,14 @@ class ShiftedFactors {
 // lower triangle is given. None if a pivot is barely above 0.
 std::optional<std::vector<double>> inverse_of_factor(std::vector<double> lower,
                                                      std::size_t count) {
-  constexpr double kLeastPivot = 1e-8;
+  constexpr double kMinPivot = 1e-8;
   for (std::size_t i = 0; i < count; ++i) {
     double* const row = &lower[i * count];
     for (std::size_t j = 0; j <= i; ++j) {
       const double* const other = &lower[j * count];
       double sum = row[j];
       for (std::size_t k = 0; k < j; ++k) sum -= row[k] * other[k];
-      if (j == i && !(sum > kLeastPivot)) return std::nullopt;
+      if (j == i && !(sum > kMinPivot)) return std::nullopt;
       row[j] = j == i ? std::sqrt(sum) : sum / other[j];
     }
   }
@@ -119,8 +119,8 @@ double largest_beside_diagonal(std::span<const double> lower, std::size_t count)
 // orthogonal unless their values are equal. False if one of them depends on those before.
 bool orthonormalise(std::vector<double>& columns, std::size_t count) {
   constexpr double kNear = 1e-9;
-  constexpr int kMost = 4;  // usually, one or two are enough
-  for (int i = 0; i < kMost; ++i) {
+  constexpr int kMax = 4;  // usually, one or two are enough
+  for (int i = 0; i < kMax; ++i) {
     const std::vector<double> gram = gram_matrix(columns, count);
     const bool is_near = largest_beside_diagonal(gram, count) < kNear;
     const auto inverse = is_near ? std::optional(inverse_near_identity(gram, count))

@@ -94,11 +94,11 @@ RLPC_WIDEST void add_product(std::span<const double> a, std::size_t a_width,
     double* below = out + b_width;
     std::size_t i = 0;
     for (; i + kTogether <= inner; i += kTogether) {
-      const FourProducts of_x(x + i, 1, &b[i * b_width], b_width);
-      const FourProducts of_y(y + i, 1, &b[i * b_width], b_width);
+      const FourProducts products_x(x + i, 1, &b[i * b_width], b_width);
+      const FourProducts products_y(y + i, 1, &b[i * b_width], b_width);
       for (std::size_t j = 0; j < b_width; ++j) {
-        out[j] += of_x[j];
-        below[j] += of_y[j];
+        out[j] += products_x[j];
+        below[j] += products_y[j];
       }
     }
     for (; i < inner; ++i) {

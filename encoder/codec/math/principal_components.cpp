@@ -22,7 +22,7 @@ std::vector<double> transpose(const TrajectoryMatrix& m) {
 }
 
 // Excludes components that are only rounding errors, in a matrix of low rank.
-double least_energy(double total_energy, double min_energy) {
+double energy_floor(double total_energy, double min_energy) {
   constexpr double kRankTolerance = 1e-13;
   return std::max(min_energy, kRankTolerance * total_energy);
 }
@@ -49,13 +49,13 @@ void for_some_rows(const TrajectoryRows& rows,
 // sample is not enough.
 constexpr std::size_t kWideMatrix = 1536;  // fixed: time; 512 frames of three coordinates
 constexpr std::size_t kSampled = 512;  // fixed: time; a sixteenth of the time of the narrowest
-constexpr std::size_t kMostOfSample = kSampled / 4;  // fixed: see above
+constexpr std::size_t kMaxSamplePart = kSampled / 4;  // fixed: see above
 
 // Returns the components of evenly spaced columns, with a reduced min_energy for safety. None:
 // there are too many.
 std::optional<EigenPairs> components_of_sample(const TrajectoryRows& rows, double min_energy,
                                                double& total_energy) {
-  constexpr double kLeast = 0.25;  // fixed: energies in the sample differ from those of all
+  constexpr double kMin = 0.25;  // fixed: energies in the sample differ from those of all
   const std::size_t width = rows.num_frames;
   std::vector<double> gram(kSampled * kSampled);
   std::vector<double> sample;
@@ -72,9 +72,9 @@ std::optional<EigenPairs> components_of_sample(const TrajectoryRows& rows, doubl
   });
   const double part = static_cast<double>(kSampled) / static_cast<double>(width);
   EigenPairs pairs =
-      leading_eigenvectors(gram, kSampled, kMostOfSample + 1,
-                           least_energy(sampled_energy, kLeast * part * min_energy));
-  if (pairs.vectors.size() > kMostOfSample) return std::nullopt;
+      leading_eigenvectors(gram, kSampled, kMaxSamplePart + 1,
+                           energy_floor(sampled_energy, kMin * part * min_energy));
+  if (pairs.vectors.size() > kMaxSamplePart) return std::nullopt;
   return pairs;
 }
 
@@ -101,9 +101,9 @@ std::vector<std::vector<double>> orthonormal(std::vector<std::vector<double>> ve
 
 // Returns orthonormal temporal vectors that follow from the spatial ones of a sample.
 std::vector<std::vector<double>> temporal_basis(const TrajectoryRows& rows,
-                                                const EigenPairs& of_sample) {
+                                                const EigenPairs& sample_pairs) {
   const std::size_t width = rows.num_frames;
-  const std::size_t count = of_sample.vectors.size();
+  const std::size_t count = sample_pairs.vectors.size();
   std::vector<double> sums(count * width);  // [count][width]
   for_some_rows(rows, [&](std::span<const double> some) {
     const std::size_t together = some.size() / width;
@@ -112,7 +112,7 @@ std::vector<std::vector<double>> temporal_basis(const TrajectoryRows& rows,
       for (std::size_t k = 0; k < count; ++k) {
         double sum = 0.0;
         for (std::size_t i = 0; i < kSampled; ++i) {
-          sum += some[row * width + i * width / kSampled] * of_sample.vectors[k][i];
+          sum += some[row * width + i * width / kSampled] * sample_pairs.vectors[k][i];
         }
         spatial[k * together + row] = sum;
       }
@@ -133,9 +133,9 @@ std::optional<ComponentsByRow> components_in_subspace(const TrajectoryRows& rows
                                                       std::size_t max_components,
                                                       double min_energy) {
   ComponentsByRow result;
-  const auto of_sample = components_of_sample(rows, min_energy, result.total_energy);
-  if (!of_sample) return std::nullopt;
-  const std::vector<std::vector<double>> basis = temporal_basis(rows, *of_sample);
+  const auto sample_pairs = components_of_sample(rows, min_energy, result.total_energy);
+  if (!sample_pairs) return std::nullopt;
+  const std::vector<std::vector<double>> basis = temporal_basis(rows, *sample_pairs);
   const std::size_t width = rows.num_frames;
   const std::size_t count = basis.size();
   if (count == 0) return result;
@@ -149,7 +149,7 @@ std::optional<ComponentsByRow> components_in_subspace(const TrajectoryRows& rows
     projected.insert(projected.end(), products.begin(), products.end());
   });
   EigenPairs pairs = leading_eigenvectors(gram, count, max_components,
-                                          least_energy(result.total_energy, min_energy));
+                                          energy_floor(result.total_energy, min_energy));
   const std::size_t found = pairs.vectors.size();
   for (const std::vector<double>& vector : pairs.vectors) {
     std::vector<double>& temporal = result.temporal.emplace_back(width);
@@ -172,9 +172,9 @@ PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
   const bool by_frames = matrix.num_frames <= matrix.num_values;
   const std::vector<double> transposed = by_frames ? std::vector<double>{} : transpose(matrix);
   const std::size_t width = by_frames ? matrix.num_frames : matrix.num_values;
-  const double least = least_energy(pc.total_energy, min_energy);
+  const double min = energy_floor(pc.total_energy, min_energy);
   EigenPairs pairs = leading_eigenvectors(gram_matrix(by_frames ? matrix.a : transposed, width),
-                                          width, max_components, least);
+                                          width, max_components, min);
   pc.energy = std::move(pairs.values);
   std::vector<std::vector<double>> vectors = std::move(pairs.vectors);
   if (by_frames) {
@@ -222,7 +222,7 @@ ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_co
     add_gram_matrix(some, width, gram);
   });
   EigenPairs pairs = leading_eigenvectors(gram, width, max_components,
-                                          least_energy(result.total_energy, min_energy));
+                                          energy_floor(result.total_energy, min_energy));
   result.energy = std::move(pairs.values);
   result.temporal = std::move(pairs.vectors);
   const std::vector<double> vectors = as_columns(result.temporal, width);

@@ -19,15 +19,14 @@ struct SmallSolution {
   bool is_unique = true;  // false: unknowns without a pivot are 0
 };
 
-// Solves for the first n unknowns; the others are 0. Only values above least_pivot are used as
+// Solves for the first n unknowns; the others are 0. Only values above min_pivot are used as
 // pivots.
 template <std::size_t N>
-SmallSolution<N> solve_small(SmallSystem<N> system, std::size_t n = N,
-                             double least_pivot = 0.0) {
+SmallSolution<N> solve_small(SmallSystem<N> system, std::size_t n = N, double min_pivot = 0.0) {
   auto& [a, b] = system;
   SmallSolution<N> solution;
   for (std::size_t k = 0; k < n; ++k) {
-    if (!(a[k][k] > least_pivot)) {
+    if (!(a[k][k] > min_pivot)) {
       solution.is_unique = false;
       continue;
     }
@@ -39,7 +38,7 @@ SmallSolution<N> solve_small(SmallSystem<N> system, std::size_t n = N,
   }
   auto& x = solution.x;
   for (std::size_t k = n; k-- > 0;) {
-    if (!(a[k][k] > least_pivot)) continue;
+    if (!(a[k][k] > min_pivot)) continue;
     double sum = b[k];
     for (std::size_t j = k + 1; j < n; ++j) sum -= a[k][j] * x[j];
     x[k] = sum / a[k][k];

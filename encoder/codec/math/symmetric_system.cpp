@@ -19,13 +19,13 @@ void subtract_row(std::span<double> b, std::size_t width, double factor, std::si
 
 }  // namespace
 
-SymmetricSystem::SymmetricSystem(std::vector<double> a, std::size_t n, double least_pivot)
+SymmetricSystem::SymmetricSystem(std::vector<double> a, std::size_t n, double min_pivot)
     : n_(n), factors_(std::move(a)) {
   std::vector<double> diagonal(n);
   for (std::size_t k = 0; k < n; ++k) diagonal[k] = factors_[k * n + k];
   for (std::size_t k = 0; k < n; ++k) {  // right-looking: updates are independent
     double* top = &factors_[k * n];
-    if (!(top[k] > least_pivot * diagonal[k] && top[k] > 0.0)) {
+    if (!(top[k] > min_pivot * diagonal[k] && top[k] > 0.0)) {
       top[k] = 0.0;
       is_unique_ = false;
       continue;

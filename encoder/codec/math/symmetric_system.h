@@ -10,13 +10,12 @@ namespace rlpc {
 // Solves a x = b by the factorisation a = L D L^T.
 class SymmetricSystem {
  public:
-  // Default of least_pivot. A pivot that is at most least_pivot times the diagonal element
+  // Default of min_pivot. A pivot that is at most min_pivot times the diagonal element
   // before elimination is not used; the unknown is then 0.
   static constexpr double kRounding = 1e-14;
 
   //   a  [n][n], row-major, positive semidefinite; only the upper triangle is read
-  explicit SymmetricSystem(std::vector<double> a, std::size_t n,
-                           double least_pivot = kRounding);
+  explicit SymmetricSystem(std::vector<double> a, std::size_t n, double min_pivot = kRounding);
 
   bool is_unique() const { return is_unique_; }  // whether all unknowns have a pivot
   // Replaces b by x; [n][width], row-major.

@@ -24,15 +24,15 @@ struct Shares {
   std::uint32_t parts1;
 
   // Returns the maximum weight of each side. slack: for the vertices of a coarse graph.
-  SideWeights most(std::int64_t total, std::int64_t slack) const {
-    SideWeights most{};
+  SideWeights max_weights(std::int64_t total, std::int64_t slack) const {
+    SideWeights max_weights{};
     const std::int64_t parts = std::int64_t{parts0} + parts1;
     for (std::size_t s = 0; s < 2; ++s) {
       const std::int64_t own = s == 0 ? parts0 : parts1;
       const std::int64_t share = (total * own + parts - 1) / parts;
-      most[s] = std::min(share + share / kSlack + slack, total - (parts - own));
+      max_weights[s] = std::min(share + share / kSlack + slack, total - (parts - own));
     }
-    return most;
+    return max_weights;
   }
 };
 
@@ -64,11 +64,12 @@ std::vector<std::vector<double>> fiedler_vectors(const Graph& graph) {
 
 // Divides by spectral bisection: the first vertices along an eigenvector are on side 0. Returns
 // the best of several divisions, once they are refined.
-Sides bisect_coarsest(const Graph& graph, const Shares& shares, const SideWeights& most) {
+Sides bisect_coarsest(const Graph& graph, const Shares& shares,
+                      const SideWeights& max_weights) {
   const std::uint32_t n = graph.num_vertices();
   const std::int64_t total = total_weight(graph);
   Sides best(n, 0);
-  std::int64_t least = -1;
+  std::int64_t min = -1;
   for (const auto& vector : fiedler_vectors(graph)) {
     std::vector<std::uint32_t> order(n);
     std::iota(order.begin(), order.end(), 0U);
@@ -83,10 +84,10 @@ Sides bisect_coarsest(const Graph& graph, const Shares& shares, const SideWeight
         side[v] = 0;
         weight += graph.weight[v];
       }
-      refine_bisection(graph, most, side);
+      refine_bisection(graph, max_weights, side);
       const std::int64_t cut = cut_weight(graph, side);
-      if (least < 0 || cut < least) {
-        least = cut;
+      if (min < 0 || cut < min) {
+        min = cut;
         best = std::move(side);
       }
       std::reverse(order.begin(), order.end());
@@ -116,7 +117,7 @@ Sides bisect(const Graph& graph, std::uint32_t parts0, std::uint32_t parts1) {
     return std::int64_t{*std::max_element(of.weight.begin(), of.weight.end())} - 1;
   };
   const Graph& coarsest = at(levels.size());
-  Sides side = bisect_coarsest(coarsest, shares, shares.most(total, slack(coarsest)));
+  Sides side = bisect_coarsest(coarsest, shares, shares.max_weights(total, slack(coarsest)));
   for (std::size_t i = levels.size(); i-- > 0;) {
     const Graph& fine = at(i);
     Sides projected(fine.num_vertices());
@@ -124,7 +125,7 @@ Sides bisect(const Graph& graph, std::uint32_t parts0, std::uint32_t parts1) {
       projected[v] = side[levels[i].coarse_of[v]];
     }
     side = std::move(projected);
-    refine_bisection(fine, shares.most(total, slack(fine)), side);
+    refine_bisection(fine, shares.max_weights(total, slack(fine)), side);
   }
   return side;
 }

@@ -15,9 +15,9 @@ constexpr std::size_t kPatience = 100;  // fixed: time; moves of a pass without 
 
 class RefinementPass {
  public:
-  RefinementPass(const Graph& graph, const SideWeights& most, Sides& side)
+  RefinementPass(const Graph& graph, const SideWeights& max_weights, Sides& side)
       : graph_(graph),
-        most_(most),
+        max_(max_weights),
         side_(side),
         gain_(graph.num_vertices()),
         is_locked_(graph.num_vertices()) {
@@ -60,28 +60,28 @@ class RefinementPass {
   using Entry = std::pair<std::int64_t, std::uint32_t>;
 
   std::int64_t excess() const {
-    return std::max<std::int64_t>(weight_[0] - most_[0], 0) +
-           std::max<std::int64_t>(weight_[1] - most_[1], 0);
+    return std::max<std::int64_t>(weight_[0] - max_[0], 0) +
+           std::max<std::int64_t>(weight_[1] - max_[1], 0);
   }
 
   std::optional<std::uint32_t> next() {
     for (const std::size_t s : {0U, 1U}) {
-      if (weight_[s] <= most_[s]) continue;
+      if (weight_[s] <= max_[s]) continue;
       if (queue_[s].empty()) queue_all(s);
       return queue_[s].empty() ? std::nullopt : std::optional(queue_[s].begin()->second);
     }
-    const auto of_0 = first_that_fits(0);
-    const auto of_1 = first_that_fits(1);
-    if (!of_0 && !of_1) return std::nullopt;
-    if (!of_0 || !of_1) return (of_0 ? of_0 : of_1)->second;
-    return std::min(*of_0, *of_1).second;
+    const auto vertex_0 = first_that_fits(0);
+    const auto vertex_1 = first_that_fits(1);
+    if (!vertex_0 && !vertex_1) return std::nullopt;
+    if (!vertex_0 || !vertex_1) return (vertex_0 ? vertex_0 : vertex_1)->second;
+    return std::min(*vertex_0, *vertex_1).second;
   }
 
   // Returns the best vertex of a side that the other side has room for.
   std::optional<Entry> first_that_fits(std::size_t s) const {
     std::size_t tried = 0;
     for (const Entry& entry : queue_[s]) {
-      if (weight_[1 - s] + graph_.weight[entry.second] <= most_[1 - s]) return entry;
+      if (weight_[1 - s] + graph_.weight[entry.second] <= max_[1 - s]) return entry;
       if (++tried == kTried) break;
     }
     return std::nullopt;
@@ -111,7 +111,7 @@ class RefinementPass {
   }
 
   const Graph& graph_;
-  const SideWeights& most_;
+  const SideWeights& max_;
   Sides& side_;
   std::vector<std::int64_t> gain_;  // cut weight that moving the vertex saves
   std::vector<bool> is_locked_;     // has moved
@@ -123,9 +123,9 @@ class RefinementPass {
 
 }  // namespace
 
-void refine_bisection(const Graph& graph, const SideWeights& most, Sides& side) {
+void refine_bisection(const Graph& graph, const SideWeights& max_weights, Sides& side) {
   for (int i = 0; i < kPasses; ++i) {
-    if (!RefinementPass(graph, most, side).run()) return;
+    if (!RefinementPass(graph, max_weights, side).run()) return;
   }
 }
 

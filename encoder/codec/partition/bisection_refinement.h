@@ -13,9 +13,9 @@ using Sides = std::vector<std::uint8_t>;  // [vertex], 0 or 1
 using SideWeights = std::array<std::int64_t, 2>;
 
 // Moves vertices one by one, even if that cuts more edges at first, and keeps the moves up to
-// the best state: the least weight of a side above `most`, then the least weight of cut edges.
-// Repeats this while it helps.
-void refine_bisection(const Graph& graph, const SideWeights& most, Sides& side);
+// the best state: the least weight of a side above `max_weights`, then the least weight of cut
+// edges. Repeats this while it helps.
+void refine_bisection(const Graph& graph, const SideWeights& max_weights, Sides& side);
 
 // Returns the weight of edges between sides, or between parts.
 template <typename Part>

@@ -65,11 +65,11 @@ class KMeans {
     for_ranges(num_points_, kTogether, [&](std::size_t first, std::size_t end) {
       for (std::size_t i = first; i < end; ++i) {
         std::size_t best = 0;
-        double least = std::numeric_limits<double>::infinity();
+        double min = std::numeric_limits<double>::infinity();
         for (std::size_t k = 0; k * dimensions_ < centres_.size(); ++k) {
           const double away = distance(point(i), &centres_[k * dimensions_]);
-          if (away >= least) continue;
-          least = away;
+          if (away >= min) continue;
+          min = away;
           best = k;
         }
         if (nearest_[i] != best) changed[i / kTogether] = 1;

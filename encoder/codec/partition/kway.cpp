@@ -36,7 +36,7 @@ class PartRefinement {
       : graph_(graph), partition_(partition), size_(count), edges_(count) {
     for (const std::uint16_t part : partition) ++size_[part];
     const std::uint64_t n = partition.size();
-    most_ = static_cast<std::uint32_t>(
+    max_ = static_cast<std::uint32_t>(
         std::max<std::uint64_t>((n + count - 1) / count, n * kPerCent / (count * 100ULL)));
   }
 
@@ -58,7 +58,7 @@ class PartRefinement {
     }
     std::uint16_t best = from;
     for (const std::uint16_t part : near_) {
-      if (part == from || size_[part] >= most_) continue;
+      if (part == from || size_[part] >= max_) continue;
       const bool evens = size_[part] + 1 < (best == from ? size_[from] : size_[best] + 1);
       if (edges_[part] > edges_[best] || (edges_[part] == edges_[best] && evens)) best = part;
     }
@@ -75,7 +75,7 @@ class PartRefinement {
   std::vector<std::uint32_t> size_;   // [part]
   std::vector<std::uint64_t> edges_;  // [part]: edges of the vertex to it; 0 between calls
   std::vector<std::uint16_t> near_;   // parts that the vertex has edges to
-  std::uint32_t most_ = 0;
+  std::uint32_t max_ = 0;
 };
 
 }  // namespace

@@ -25,9 +25,9 @@ std::size_t reached(const Graph& graph) {
   return found.size();
 }
 
-std::size_t edges_of_weight(const Graph& graph, std::uint32_t least, std::uint32_t most) {
+std::size_t edges_of_weight(const Graph& graph, std::uint32_t min, std::uint32_t max) {
   std::size_t count = 0;
-  for (const std::uint32_t w : graph.edge_weight) count += w >= least && w <= most;
+  for (const std::uint32_t w : graph.edge_weight) count += w >= min && w <= max;
   return count / 2;
 }
 

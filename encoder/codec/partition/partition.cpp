@@ -28,20 +28,20 @@ std::vector<Point3> first_frame(const SpanFrames& frames) {
 Partition partition_vertices(PartitionMethod method, const SpanFrames& frames,
                              std::span<const Triangle> triangles, std::uint32_t count) {
   assert(method != PartitionMethod::kSeeds && count > 0 && count <= kMaxParts);
-  const std::uint32_t most = std::min(count, frames.num_vertices);
+  const std::uint32_t max = std::min(count, frames.num_vertices);
   const std::vector<Point3> points = first_frame(frames);
   Partition partition;
   if (method == PartitionMethod::kLloyd) {
-    partition = lloyd_partition(points, most);
+    partition = lloyd_partition(points, max);
   } else {
     const Graph graph = make_mesh_graph(points, triangles);
-    if (method == PartitionMethod::kKway) partition = kway_partition(graph, most);
+    if (method == PartitionMethod::kKway) partition = kway_partition(graph, max);
     if (method == PartitionMethod::kSpectral) {
-      partition = spectral_partition(graph, points, triangles, most);
+      partition = spectral_partition(graph, points, triangles, max);
     }
     if (method == PartitionMethod::kMotion) {
-      partition = frames.num_frames > 1 ? motion_partition(frames, graph, most)
-                                        : lloyd_partition(points, most);  // nothing moves
+      partition = frames.num_frames > 1 ? motion_partition(frames, graph, max)
+                                        : lloyd_partition(points, max);  // nothing moves
     }
   }
   number_parts(partition);

@@ -22,7 +22,7 @@ constexpr std::size_t kMaxVectors = 32;      // fixed: time
 // Note: the paper divides d by the square of the mean, which depends on its unit.
 std::vector<double> affinity(const SurfaceSamples& samples) {
   constexpr double kLog2E = 1.4426950408889634;  // fixed: log2(e)
-  constexpr double kLeast = -800.0;              // fixed: smaller powers of two are zero
+  constexpr double kMin = -800.0;                // fixed: smaller powers of two are zero
   const std::size_t n = samples.count;
   double mean = 0.0;
   for (const double d : samples.distance) mean += d;
@@ -32,7 +32,7 @@ std::vector<double> affinity(const SurfaceSamples& samples) {
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) {
       const double d = mean > 0.0 ? samples.distance[i * n + j] / mean : 0.0;
-      w[i * n + j] = det_exp2(std::max(-0.5 * d * kLog2E, kLeast));
+      w[i * n + j] = det_exp2(std::max(-0.5 * d * kLog2E, kMin));
       degree[i] += w[i * n + j];
     }
   }
@@ -68,10 +68,11 @@ Partition spectral_partition(const Graph& graph, std::span<const Point3> points,
   const auto vectors = leading_eigenvectors(affinity(samples), samples.count,
                                             std::min<std::size_t>(count, kMaxVectors), 0.0)
                            .vectors;
-  const Partition of_sample = k_means(embedding(vectors, samples.count), vectors.size(), count);
+  const Partition sample_parts =
+      k_means(embedding(vectors, samples.count), vectors.size(), count);
   Partition partition(graph.num_vertices());
   for (std::uint32_t v = 0; v < partition.size(); ++v) {
-    partition[v] = of_sample[samples.nearest[v]];
+    partition[v] = sample_parts[samples.nearest[v]];
   }
   return partition;
 }

@@ -35,11 +35,11 @@ TEST(SurfaceLengths, AreLongAcrossConcaveCreases) {
   const PartitionScene roof = folded(-1.0);
   const PartitionScene valley = folded(1.0);
   const Graph graph = make_mesh_graph(roof.points, roof.triangles);
-  const auto of_roof = surface_lengths(graph, roof.points, roof.triangles);
-  const auto of_valley = surface_lengths(graph, valley.points, valley.triangles);
+  const auto roof_lengths = surface_lengths(graph, roof.points, roof.triangles);
+  const auto valley_lengths = surface_lengths(graph, valley.points, valley.triangles);
   const std::uint32_t middle = 2 * 41 + 20;
-  const double flat = length(graph, of_valley, middle - 5, middle - 4);
-  const double concave = length(graph, of_valley, middle - 1, middle);
+  const double flat = length(graph, valley_lengths, middle - 5, middle - 4);
+  const double concave = length(graph, valley_lengths, middle - 1, middle);
   EXPECT_GT(concave, 50 * flat);
   // Relative to their means, which the fold determines, both are alike, so compare a sheet with
   // both.
@@ -50,7 +50,7 @@ TEST(SurfaceLengths, AreLongAcrossConcaveCreases) {
   const double up = length(graph, lengths, 2 * 41 + 9, 2 * 41 + 10);
   const double down = length(graph, lengths, 2 * 41 + 29, 2 * 41 + 30);
   EXPECT_GT(down, 4 * up);
-  EXPECT_EQ(of_roof.size(), graph.neighbour.size());
+  EXPECT_EQ(roof_lengths.size(), graph.neighbour.size());
 }
 
 TEST(SurfaceLengths, AreGeodesicInPointClouds) {

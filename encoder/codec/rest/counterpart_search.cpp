@@ -20,7 +20,7 @@ constexpr std::size_t kCellEntries = 8;
 constexpr std::size_t kFollowed = 32;
 // fixed: Bad predictions after which it is not followed any further, which bounds the work at
 // vertices of many triangles.
-constexpr int kMostBad = 6;
+constexpr int kMaxBad = 6;
 // tuned: Predictions of the search for each vertex, on average. Smooth grids, where all shapes
 // are alike, would take hundreds.
 constexpr std::int64_t kPredictions = 64;
@@ -120,7 +120,7 @@ double CounterpartSearch::growth(std::uint32_t v, const HingePairs& pairs,
   std::vector<std::uint32_t> visited;
   double gain = 0.0;
   int bad = 0;
-  for (std::size_t i = 0; i < followed.size() && bad < kMostBad; ++i) {
+  for (std::size_t i = 0; i < followed.size() && bad < kMaxBad; ++i) {
     for (const std::uint32_t u : dependents_[followed[i]]) {
       if (followed.size() >= kFollowed || order_.place(u) <= order_.place(v) || seen_[u] != 0) {
         continue;

@@ -56,7 +56,7 @@ constexpr std::array<RestSettings, 4> kWeights{{{false, true, 16, 0, true, false
 
 // Returns the nearest residual of the vertex that `recon` is at.
 Vec3i nearest_residual(const RestRecon& recon, const std::int32_t* wanted, double step) {
-  constexpr double kMost = static_cast<double>(kMaxResidual);       // fixed: format
+  constexpr double kMax = static_cast<double>(kMaxResidual);        // fixed: format
   constexpr double kAxisUnit = 1.0 / static_cast<double>(1 << 30);  // fixed: format
   std::array<double, kRestFactors> difference{};
   for (std::size_t c = 0; c < kRestFactors; ++c) {
@@ -69,7 +69,7 @@ Vec3i nearest_residual(const RestRecon& recon, const std::int32_t* wanted, doubl
       along += static_cast<double>(recon.axes()[i][c]) * kAxisUnit * difference[c];
     }
     residual[i] =
-        static_cast<std::int32_t>(round_to_int(std::clamp(along / step, -kMost, kMost)));
+        static_cast<std::int32_t>(round_to_int(std::clamp(along / step, -kMax, kMax)));
   }
   return residual;
 }
@@ -127,13 +127,13 @@ class RestCoder {
   void choose_counterpart(std::uint32_t v) {
     Counterpart& choice = coded_.counterparts[v];
     const Counterparts& counterparts = writer_.counterparts();
-    double least = bits_of(v, choice, nullptr);
+    double min = bits_of(v, choice, nullptr);
     if (counterparts.is_inherited()) {
       Counterpart inherited;
       inherited.flag = true;
       const double bits = bits_of(v, inherited, &counterparts.pairs());
-      if (bits < least) {
-        least = bits;
+      if (bits < min) {
+        min = bits;
         choice = inherited;
       }
     }
@@ -141,7 +141,7 @@ class RestCoder {
     const auto found = choice.flag ? std::nullopt : search_->find(v, counterparts);
     if (found) {
       const HingePairs pairs = counterparts.new_pairs(found->choice);
-      if (bits_of(v, found->choice, &pairs) - found->gain < least) choice = found->choice;
+      if (bits_of(v, found->choice, &pairs) - found->gain < min) choice = found->choice;
     }
     writer_.counterpart(section_, choice);
   }

@@ -52,8 +52,8 @@ struct TwoSheets {
   void add_vertex(std::uint32_t sheet, const std::array<std::int32_t, 3>& x, bool copied) {
     std::array<std::int32_t, 3> position = x;
     if (sheet == 1 && copied) {
-      const std::size_t of_first = wanted.size() - std::size_t{3} * kWidth * kHeight;
-      position = {50000 - wanted[of_first + 1], wanted[of_first], -wanted[of_first + 2]};
+      const std::size_t num_first = wanted.size() - std::size_t{3} * kWidth * kHeight;
+      position = {50000 - wanted[num_first + 1], wanted[num_first], -wanted[num_first + 2]};
     }
     wanted.insert(wanted.end(), position.begin(), position.end());
   }

@@ -30,10 +30,10 @@ std::optional<InputError> check_format(const FrameFormat& format) {
     }
   }
   for (std::size_t c = 0; c < 3; ++c) {
-    constexpr float kMost = 0x1p100F;  // fixed: largest coordinate
+    constexpr float kMax = 0x1p100F;  // fixed: largest coordinate
     const float low = format.box_min[c];
     const float high = format.box_max[c];
-    if (low <= high && low >= -kMost && high <= kMost) continue;
+    if (low <= high && low >= -kMax && high <= kMax) continue;
     return InputError{std::string("the box has no extent in ") + "xyz"[c] +
                       " within 2^100: " + shortest_text(low) + " to " + shortest_text(high)};
   }

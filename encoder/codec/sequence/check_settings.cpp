@@ -114,9 +114,9 @@ std::optional<InputError> check_low_delay(const EncoderSettings& s) {
 std::optional<InputError> check_pattern(const EncoderSettings& s) {
   const std::uint32_t layers = s.inter.temporal_layers;
   if (!s.inter.pattern && !s.low_delay) {
-    constexpr std::uint32_t kMost = kMaxPatternPeriodLog2 + 1;  // fixed: format
-    if (layers >= 1 && layers <= kMost) return std::nullopt;
-    return InputError{"without 'pattern', there are 1 to " + std::to_string(kMost) +
+    constexpr std::uint32_t kMax = kMaxPatternPeriodLog2 + 1;  // fixed: format
+    if (layers >= 1 && layers <= kMax) return std::nullopt;
+    return InputError{"without 'pattern', there are 1 to " + std::to_string(kMax) +
                       " temporal layers ('temporal_layers')"};
   }
   FramePattern pattern = s.inter.pattern.value_or(FramePattern{});
@@ -223,16 +223,16 @@ std::optional<InputError> check_baseline(const EncoderSettings& s) {
 
 // Rejects counts that exceed the limits of every level (Annex B), whatever the animation.
 std::optional<InputError> check_counts(const EncoderSettings& s) {
-  const Level& most = kLevels.back();
+  const Level& top = kLevels.back();
   const auto refuse = [](std::uint32_t limit, const std::string& what) {
     return InputError{"no level allows more than " + std::to_string(limit) + " " + what};
   };
-  if (s.components > most.max_components) {
-    return refuse(most.max_components, "components ('components')");
+  if (s.components > top.max_components) {
+    return refuse(top.max_components, "components ('components')");
   }
-  if (s.main.bones > most.max_clusters) return refuse(most.max_clusters, "bones ('bones')");
-  if (s.baseline.clusters > most.max_clusters) {
-    return refuse(most.max_clusters, "clusters ('clusters')");
+  if (s.main.bones > top.max_clusters) return refuse(top.max_clusters, "bones ('bones')");
+  if (s.baseline.clusters > top.max_clusters) {
+    return refuse(top.max_clusters, "clusters ('clusters')");
   }
   return std::nullopt;
 }
@@ -290,10 +290,10 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
     return InputError{"hierarchical tracks have at most " + std::to_string(kMaxTrackLevels) +
                       " levels besides level 0 ('track_levels')"};
   }
-  const std::uint32_t most_layers = s.main.track_levels.value_or(kMaxTrackLevels) + 1;
-  if (s.main.temporal_layers < 1 || s.main.temporal_layers > most_layers) {
-    return InputError{"with " + std::to_string(most_layers - 1) +
-                      " track levels, there are 1 to " + std::to_string(most_layers) +
+  const std::uint32_t max_layers = s.main.track_levels.value_or(kMaxTrackLevels) + 1;
+  if (s.main.temporal_layers < 1 || s.main.temporal_layers > max_layers) {
+    return InputError{"with " + std::to_string(max_layers - 1) +
+                      " track levels, there are 1 to " + std::to_string(max_layers) +
                       " temporal layers ('temporal_layers')"};
   }
   // A vertex none of whose bones is a candidate has at most these (6.12.2).

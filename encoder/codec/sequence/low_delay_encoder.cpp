@@ -85,10 +85,10 @@ std::uint32_t LowDelayEncoder::frames_in_gof() const {
 // Reduces a maximum error, which is measured from the input's numbers, by the rounding to
 // floats.
 Target LowDelayEncoder::target_for_floats() const {
-  constexpr double kLeast = 1e-30;  // fixed: out of reach, if nothing positive is left
+  constexpr double kMin = 1e-30;  // fixed: out of reach, if nothing positive is left
   Target target = settings_.target;
   if (target.kind == Target::kMaxError) {
-    target.value = std::max(target.value - format_.max_rounding, kLeast);
+    target.value = std::max(target.value - format_.max_rounding, kMin);
   }
   return target;
 }
@@ -100,8 +100,8 @@ double LowDelayEncoder::step_for(double rms_spread) const {
   const Target target = target_for_floats();
   if (target.kind == Target::kMaxError) {
     // Coordinates are wrong by half a step, and by half a grid step where they are rounded.
-    const double of_coordinate = target.value * per_unit / std::sqrt(3.0);
-    return 2.0 * (of_coordinate - 0.5) - 1.0 / kExactInterStep;
+    const double coordinate_error = target.value * per_unit / std::sqrt(3.0);
+    return 2.0 * (coordinate_error - 0.5) - 1.0 / kExactInterStep;
   }
   const double ratio = error_ratio_ > 0.0 ? error_ratio_ : kFirstErrorRatio;
   return kAim * target.value / 100.0 * rms_spread * per_unit / ratio;

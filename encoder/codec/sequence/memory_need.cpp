@@ -21,10 +21,10 @@ constexpr std::uint64_t kFactorsOfRig = 12;  // fixed: memory
 // Returns the number of frames that can be coded at once.
 std::uint64_t frames_in_memory(const EncoderSettings& settings, std::uint32_t num_vertices,
                                std::uint64_t bytes_of_position) {
-  constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 26;  // fixed: memory
+  constexpr std::uint64_t kMaxPositions = std::uint64_t{1} << 26;  // fixed: memory
   constexpr std::uint64_t kPart = 2;  // fixed: they take at most half of the limit
   const std::uint64_t positions =
-      std::min(kMostPositions, settings.max_memory_bytes / (kPart * bytes_of_position));
+      std::min(kMaxPositions, settings.max_memory_bytes / (kPart * bytes_of_position));
   return std::min<std::uint64_t>(positions / num_vertices, kMaxFrames);
 }
 
@@ -32,9 +32,9 @@ std::uint64_t frames_in_memory(const EncoderSettings& settings, std::uint32_t nu
 // as doubles, as floats and decoded, and the filters of each encoding.
 std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHeader& header,
                               std::uint32_t num_frames) {
-  constexpr std::uint64_t kOfFrame = 36;     // fixed: memory; without decoded positions
-  constexpr std::uint64_t kDecoded = 12;     // fixed: memory
-  constexpr std::uint64_t kOfFilter = 2100;  // fixed: memory
+  constexpr std::uint64_t kFrameBytes = 36;     // fixed: memory; without decoded positions
+  constexpr std::uint64_t kDecoded = 12;        // fixed: memory
+  constexpr std::uint64_t kFilterBytes = 2100;  // fixed: memory
   if (settings.profile != Profile::kHigh || !settings.may_use(GofKind::kInter)) return 0;
   std::size_t choices = 1;
   if (!settings.low_delay) {
@@ -42,13 +42,13 @@ std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHea
     const auto patches = patches_of(settings, header.open_end_flag, num_frames);
     choices = std::max(patterns.size(), choices_of_patches(patterns, patches).size());
   }
-  return kOfFrame * num_frames +
-         choices * (kDecoded * num_frames + kOfFilter * settings.inter.temporal_layers);
+  return kFrameBytes * num_frames +
+         choices * (kDecoded * num_frames + kFilterBytes * settings.inter.temporal_layers);
 }
 
 struct MemoryNeed {
   std::uint64_t with_one_thread = 0;
-  std::uint64_t of_thread = 0;  // bytes of each further thread
+  std::uint64_t thread_bytes = 0;  // bytes of each further thread
 };
 
 MemoryNeed memory_need(const EncoderSettings& settings, const SequenceHeader& header,
@@ -57,25 +57,25 @@ MemoryNeed memory_need(const EncoderSettings& settings, const SequenceHeader& he
   // Measured with random motion: 70 bytes per position of a kept analysis. Real motion
   // needs 10.
   constexpr std::uint64_t kFixed = std::uint64_t{16} << 20;  // fixed: memory
-  constexpr std::uint64_t kOfVertex = 700;                   // fixed: memory
-  constexpr std::uint64_t kOfTriangle = 250;                 // fixed: memory
+  constexpr std::uint64_t kVertexBytes = 700;                // fixed: memory
+  constexpr std::uint64_t kTriangleBytes = 250;              // fixed: memory
   constexpr std::uint64_t kKept = 70;                        // fixed: memory
   // The rest of a shared rig: rest position, influences, two sets of weights of prediction.
-  constexpr std::uint64_t kOfRig = 400;  // fixed: memory
+  constexpr std::uint64_t kRigBytes = 400;  // fixed: memory
   const bool has_rigs = settings.profile == Profile::kHigh && span_frames < header.num_frames;
-  const std::uint64_t of_rig =
-      has_rigs ? header.num_vertices * (kOfRig + kFactorsOfRig * span_frames) : 0;
+  const std::uint64_t rig_bytes =
+      has_rigs ? header.num_vertices * (kRigBytes + kFactorsOfRig * span_frames) : 0;
   // Each thread has a span of its own, or a candidate for one, encoded by all kinds of GOFs;
   // another rig is in force.
-  const std::uint64_t of_thread =
+  const std::uint64_t thread_bytes =
       header.num_vertices *
           (kBytesOfPosition * span_frames + bytes_of_frames(settings, header, span_frames)) +
-      of_rig;
-  const std::uint64_t of_vertex =
-      kOfVertex + kKept * kept_frames + source.bytes_of_position * span_frames;
-  const std::uint64_t shared = kFixed + source.bytes + header.num_vertices * of_vertex +
-                               header.num_triangles * kOfTriangle + of_rig;
-  return {shared + of_thread, of_thread};
+      rig_bytes;
+  const std::uint64_t vertex_bytes =
+      kVertexBytes + kKept * kept_frames + source.bytes_of_position * span_frames;
+  const std::uint64_t shared = kFixed + source.bytes + header.num_vertices * vertex_bytes +
+                               header.num_triangles * kTriangleBytes + rig_bytes;
+  return {shared + thread_bytes, thread_bytes};
 }
 
 }  // namespace
@@ -122,7 +122,7 @@ InputResult<std::uint32_t> check_memory(const EncoderSettings& settings,
   const MemoryNeed need = memory_need(settings, header, span_frames, kept_frames, source);
   if (need.with_one_thread <= settings.max_memory_bytes) {
     const std::uint64_t others =
-        (settings.max_memory_bytes - need.with_one_thread) / need.of_thread;
+        (settings.max_memory_bytes - need.with_one_thread) / need.thread_bytes;
     const std::uint32_t wanted = std::clamp(settings.threads, 1U, kMaxEncoderThreads);
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(wanted, others + 1));
   }

@@ -25,15 +25,15 @@ double bytes_of(const BatchTrial& trial, const Frames& frames) {
   double bytes = 0.0;
   std::uint32_t first = 0;
   for (const SpanResult& span : trial.spans) {
-    const std::uint32_t of_span = first;
-    double of_rigs = 0.0;
+    const std::uint32_t span_first = first;
+    double rig_bytes = 0.0;
     for (const GofBytes& gof : span.gofs) {
-      const auto of_gof = static_cast<double>(gof.size() - gof.rig.size());
-      bytes += of_gof * part_of(first, gof.num_frames);
-      of_rigs += static_cast<double>(gof.rig.size());
+      const auto gof_bytes = static_cast<double>(gof.size() - gof.rig.size());
+      bytes += gof_bytes * part_of(first, gof.num_frames);
+      rig_bytes += static_cast<double>(gof.rig.size());
       first += gof.num_frames;
     }
-    bytes += of_rigs * part_of(of_span, first - of_span);
+    bytes += rig_bytes * part_of(span_first, first - span_first);
   }
   return bytes;
 }
@@ -55,11 +55,11 @@ bool Rival::is_out_of_reach(const BatchTrial& trial, std::uint32_t first, double
   // tuned (off: 0): The rate is a power of the squared error that differs from kRateOfError by
   // up to this much.
   constexpr double kUncertain = 0.3;
-  constexpr double kLeastError = 1e-30;  // fixed: above zero
+  constexpr double kMinError = 1e-30;  // fixed: above zero
   const auto count = static_cast<std::uint32_t>(trial.metrics.frames.size());
   const Frames frames{first, first + count};
-  const double error = std::max(error_of(target_, trial.metrics, {0, count}), kLeastError);
-  const double other = std::max(error_of(target_, best_.metrics, frames), kLeastError);
+  const double error = std::max(error_of(target_, trial.metrics, {0, count}), kMinError);
+  const double other = std::max(error_of(target_, best_.metrics, frames), kMinError);
   const double apart = std::max(error / other, other / error);
   return bits_at_equal_error(bytes_of(trial, {0, count}), error / other) >
          far * det_exp2(kUncertain * det_log2(apart)) *
@@ -73,8 +73,8 @@ bool Rival::has_high_rank() const {
   return std::any_of(best_.spans.begin(), best_.spans.end(), [&](const SpanResult& span) {
     std::uint32_t num_frames = 0;
     for (const GofBytes& gof : span.gofs) num_frames += gof.num_frames;
-    const std::uint32_t most = std::min(best_.metrics.num_vertices, 3 * num_frames);
-    return !span.choices.empty() || span.components >= kMany * most;
+    const std::uint32_t max = std::min(best_.metrics.num_vertices, 3 * num_frames);
+    return !span.choices.empty() || span.components >= kMany * max;
   });
 }
 

@@ -39,19 +39,19 @@ std::vector<Search> list_searches(const EncoderSettings& settings, std::uint32_t
   // fixed: relative time of usual searches, about; most others are not begun.
   constexpr double kSlowPart = 3.0;
   std::vector<Search> list;
-  EncoderSettings of_profile = settings;
+  EncoderSettings profile_settings = settings;
   const auto add = [&] {
-    const bool is_own = of_profile.profile == settings.profile;
+    const bool is_own = profile_settings.profile == settings.profile;
     for (const EncoderSettings& search :
-         searches_of_profile(of_profile, num_vertices, num_frames)) {
+         searches_of_profile(profile_settings, num_vertices, num_frames)) {
       const double part = search.preset == Preset::kSlow ? kSlowPart : 1.0;
       list.push_back({search, !is_own, is_own ? part : 0.0});
     }
   };
   add();
-  while (is_free(settings) && of_profile.profile != Profile::kBaseline) {
-    of_profile.profile =
-        of_profile.profile == Profile::kHigh ? Profile::kMain : Profile::kBaseline;
+  while (is_free(settings) && profile_settings.profile != Profile::kBaseline) {
+    profile_settings.profile =
+        profile_settings.profile == Profile::kHigh ? Profile::kMain : Profile::kBaseline;
     add();
   }
   return list;

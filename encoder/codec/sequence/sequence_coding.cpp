@@ -88,9 +88,9 @@ std::unique_ptr<SpanCoder> SequenceCoding::make_coder(const SpanFrames& frames,
 
 std::optional<EncodedSpan> SequenceCoding::encode_with(const KeptRig& rig,
                                                        const SpanFrames& frames, double step,
-                                                       double most) const {
+                                                       double max_cost) const {
   for (const auto& kind : kinds_) {
-    if (auto encoded = kind->encode_with(rig, frames, step, most)) return encoded;
+    if (auto encoded = kind->encode_with(rig, frames, step, max_cost)) return encoded;
   }
   return std::nullopt;
 }
@@ -179,9 +179,9 @@ std::vector<GofBytes> write_gof_units(const EncodedSpan& encoded, const FrameRan
     Bytes& out = gofs.empty() ? rig : gofs.back().units;
     out.insert(out.end(), bytes.begin(), bytes.end());
     if (unit.temporal_layer_idx == 0) continue;
-    std::vector<std::uint64_t>& of_layer = gofs.back().layer_bytes;
-    of_layer.resize(std::max<std::size_t>(of_layer.size(), unit.temporal_layer_idx));
-    of_layer[unit.temporal_layer_idx - 1] += bytes.size();
+    std::vector<std::uint64_t>& layer_bytes = gofs.back().layer_bytes;
+    layer_bytes.resize(std::max<std::size_t>(layer_bytes.size(), unit.temporal_layer_idx));
+    layer_bytes[unit.temporal_layer_idx - 1] += bytes.size();
   }
   const std::vector<FrameRange> parts = equal_ranges(span.count, span.num_gofs);
   for (std::size_t g = 0; g < gofs.size(); ++g) gofs[g].num_frames = parts[g].count;

@@ -67,7 +67,7 @@ class SequenceCoding {
   bool has_rigs() const { return settings_.profile == Profile::kHigh; }
   // Calls KindEncoder::encode_with() of the kind that has shared rigs.
   std::optional<EncodedSpan> encode_with(const KeptRig& rig, const SpanFrames& frames,
-                                         double step, double most) const;
+                                         double step, double max_cost) const;
   // Whether the target is a maximum error.
   bool has_largest_error() const { return settings_.target.kind == Target::kMaxError; }
   // Decodes the span as a decoder would and adds its errors against the source to the metrics;

@@ -33,9 +33,8 @@ constexpr std::uint64_t kPositionsTogether = std::uint64_t{1} << 25;  // fixed: 
 
 std::uint32_t spans_together(const SequenceHeader& header, std::uint32_t longest,
                              std::uint32_t num_threads) {
-  const std::uint64_t most =
-      kPositionsTogether / (std::uint64_t{header.num_vertices} * longest);
-  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, num_threads));
+  const std::uint64_t max = kPositionsTogether / (std::uint64_t{header.num_vertices} * longest);
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(max, 1, num_threads));
 }
 
 // Time at which the search of a contained profile may end before it has reached the target.
@@ -252,15 +251,16 @@ InputResult<TargetResult> SequenceEncoder::search(const Rival* rival) {
 // Returns the bits outside the GOFs that count towards a rate. The index has its largest size
 // for GOFs that meet the target.
 double SequenceEncoder::fixed_bits() const {
-  constexpr double kMostBytes = 0x1p31;  // fixed: largest GOF in an index
+  constexpr double kMaxBytes = 0x1p31;  // fixed: largest GOF in an index
   double bits = 8.0 * static_cast<double>(stream_->overhead_bytes()) + reserved_bits_;
   if (settings_.target.kind != Target::kBpvf) return bits;
   std::vector<GofEntry> largest;
   for (const FrameRange& span : spans_) {
     for (const FrameRange& gof : equal_ranges(span.count, span.num_gofs)) {
-      const double of_gof =
+      const double gof_bytes =
           settings_.target.value * coding_->header().num_vertices * gof.count / 8.0;
-      largest.push_back({gof.count, static_cast<std::uint64_t>(std::min(of_gof, kMostBytes))});
+      largest.push_back(
+          {gof.count, static_cast<std::uint64_t>(std::min(gof_bytes, kMaxBytes))});
     }
   }
   bits += 8.0 * static_cast<double>(stream_->index_bytes(std::move(largest)));
@@ -284,13 +284,13 @@ std::uint64_t SequenceEncoder::total_bytes(const TargetResult& result) {
 // Keeps the whole stream within a rate. After a search, reserves the bits that it does not
 // know: attributes that are predicted from the first frame, and shared rigs in the index.
 std::optional<InputError> SequenceEncoder::keep_to_rate(TargetResult& best) {
-  constexpr int kMostSearches = 3;  // fixed: reserved bits barely change
+  constexpr int kMaxSearches = 3;  // fixed: reserved bits barely change
   const SequenceHeader& header = coding_->header();
-  const double most = settings_.target.value * (1.0 * header.num_vertices) * header.num_frames;
+  const double max = settings_.target.value * (1.0 * header.num_vertices) * header.num_frames;
   for (int searches = 0; best.met; ++searches) {
-    const double excess = 8.0 * static_cast<double>(total_bytes(best)) - most;
+    const double excess = 8.0 * static_cast<double>(total_bytes(best)) - max;
     if (excess <= 0.0) break;
-    if (searches == kMostSearches) {
+    if (searches == kMaxSearches) {
       best.met = false;
       break;
     }

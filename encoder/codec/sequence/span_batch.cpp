@@ -78,7 +78,7 @@ void SpanBatch::choose_again() {
 
 bool SpanBatch::uses_earlier_rigs() const {
   return std::any_of(spans_.begin(), spans_.end(),
-                     [](const Span& span) { return span.vertices == Vertices::kOfEarlier; });
+                     [](const Span& span) { return span.vertices == Vertices::kEarlier; });
 }
 
 bool SpanBatch::use_own_rigs() {
@@ -134,7 +134,7 @@ std::optional<InputError> SpanBatch::analyse(double analysis_step, const Progres
 std::function<double(double step)> SpanBatch::expected_error() const {
   std::vector<const SpanCoder*> coders;
   for (const Span& span : spans_) {
-    if (span.vertices == Vertices::kOfEarlier) return {};
+    if (span.vertices == Vertices::kEarlier) return {};
     if (!span.coder || !span.coder->expected_error(1.0)) return {};
     coders.push_back(span.coder.get());
   }
@@ -184,13 +184,13 @@ InputResult<SpanBatch::MeasuredSpan> SpanBatch::encode(Span& span, double step,
   return measured;
 }
 
-// Encodes a span with an earlier rig. None: it costs at least `most`.
+// Encodes a span with an earlier rig. None: it costs at least `max_cost`.
 InputResult<std::optional<SpanBatch::MeasuredSpan>> SpanBatch::encode_with(const KeptRig& rig,
                                                                            Span& span,
                                                                            double step,
-                                                                           double most) {
+                                                                           double max_cost) {
   if (auto error = read(span)) return *error;
-  const auto encoded = coding_.encode_with(rig, span.frames, step, most);
+  const auto encoded = coding_.encode_with(rig, span.frames, step, max_cost);
   span.frames = {};
   if (!encoded) return std::optional<MeasuredSpan>();
   auto measured = measure(span, *encoded);
@@ -220,7 +220,7 @@ std::optional<InputError> SpanBatch::decide(const std::shared_ptr<const KeptRig>
   if (!other) return other.error();
   if (!*other || !is_better(**other, *measured)) return std::nullopt;
   measured = std::move(*other);
-  span.vertices = Vertices::kOfEarlier;
+  span.vertices = Vertices::kEarlier;
   if (span.coder) span.coder->release_analysis();
   return std::nullopt;
 }
@@ -234,7 +234,7 @@ std::optional<InputError> SpanBatch::encode_some(SpanRange spans, double step,
                                                  Measured& measured) {
   const auto encode_own = [&](std::size_t i) -> std::optional<InputError> {
     Span& span = spans_[spans.first + i];
-    if (span.vertices == Vertices::kOfEarlier) return std::nullopt;
+    if (span.vertices == Vertices::kEarlier) return std::nullopt;
     auto own = encode(span, step, analysis_step);
     if (!own) return own.error();
     measured[spans.first + i] = std::move(*own);
@@ -245,7 +245,7 @@ std::optional<InputError> SpanBatch::encode_some(SpanRange spans, double step,
   Rigs rigs(spans.count);
   for (std::uint32_t i = 0; i < spans.count; ++i) {
     const std::size_t g = spans.first + i;
-    if (spans_[g].vertices == Vertices::kOfEarlier) {
+    if (spans_[g].vertices == Vertices::kEarlier) {
       rigs[i] = rig;
       continue;
     }
@@ -282,10 +282,10 @@ InputResult<BatchTrial> SpanBatch::encode(double step, double analysis_step,
   for (Span& span : spans_) span.done = 0.0;
   BatchTrial trial;
   MetricsAccumulator metrics(coding_.header().num_vertices, options_.metrics);
-  for (std::optional<MeasuredSpan>& of_span : measured) {
-    for (const GofBytes& gof : of_span->coded.gofs) trial.gof_bytes += gof.size();
-    metrics.append(of_span->metrics);
-    trial.spans.push_back(std::move(of_span->coded));
+  for (std::optional<MeasuredSpan>& span_measure : measured) {
+    for (const GofBytes& gof : span_measure->coded.gofs) trial.gof_bytes += gof.size();
+    metrics.append(span_measure->metrics);
+    trial.spans.push_back(std::move(span_measure->coded));
   }
   trial.metrics = metrics.result();
   return trial;

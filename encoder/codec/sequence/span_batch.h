@@ -88,7 +88,7 @@ class SpanBatch {
 
  private:
   // Owner of the rig whose vertices a span uses; not known before its first encoding.
-  enum class Vertices : std::uint8_t { kUndecided, kOwn, kOfEarlier };
+  enum class Vertices : std::uint8_t { kUndecided, kOwn, kEarlier };
 
   struct Span {
     FrameRange range{};
@@ -119,7 +119,7 @@ class SpanBatch {
   InputResult<MeasuredSpan> measure(Span& span, const EncodedSpan& encoded);
   InputResult<MeasuredSpan> encode(Span& span, double step, double analysis_step);
   InputResult<std::optional<MeasuredSpan>> encode_with(const KeptRig& rig, Span& span,
-                                                       double step, double most);
+                                                       double step, double max_cost);
   std::optional<InputError> decide(const std::shared_ptr<const KeptRig>& rig, Span& span,
                                    double step, std::optional<MeasuredSpan>& measured);
   bool is_better(const MeasuredSpan& with_rig, const MeasuredSpan& own) const;

@@ -24,14 +24,14 @@ constexpr SourceMemory kHeldFrames{.bytes_of_position =
 
 // Makes spans of as many GOFs as may be held, all of about the same length.
 void SpanEncoder::make_spans(const SequenceHeader& header) {
-  const std::uint32_t of_gof = longest_gof(settings_, header.num_vertices);
+  const std::uint32_t gof_length = longest_gof(settings_, header.num_vertices);
   std::uint32_t longest = longest_span(settings_, header, kHeldFrames);
   if (format_.max_held_frames > 0) {
-    longest = std::min(longest, std::max(of_gof, format_.max_held_frames));
+    longest = std::min(longest, std::max(gof_length, format_.max_held_frames));
   }
   spans_ = is_open_ended() ? std::vector<FrameRange>{{0, longest, 1}}
                            : equal_gofs(header.num_frames, longest);
-  divide_spans(spans_, of_gof);
+  divide_spans(spans_, gof_length);
 }
 
 FrameRange SpanEncoder::current() const {
@@ -69,7 +69,7 @@ std::optional<InputError> SpanEncoder::prepare() {
 // Returns bits outside the GOFs, per frame. If the target is a rate, the index has its largest
 // size for GOFs that meet the target.
 double SpanEncoder::fixed_bits_per_frame() const {
-  constexpr double kMostBytes = 0x1p31;  // fixed: largest GOF in an index
+  constexpr double kMaxBytes = 0x1p31;  // fixed: largest GOF in an index
   std::uint64_t bytes = stream_->overhead_bytes();
   if (is_open_ended()) {
     constexpr std::uint64_t kBytesOfEntry = 8;  // fixed: about, for a GOF in an index
@@ -83,7 +83,7 @@ double SpanEncoder::fixed_bits_per_frame() const {
       for (const FrameRange& gof : equal_ranges(span.count, span.num_gofs)) {
         const double bits = settings_.target.value * format_.num_vertices * gof.count;
         largest.push_back(
-            {gof.count, static_cast<std::uint64_t>(std::min(bits / 8.0, kMostBytes))});
+            {gof.count, static_cast<std::uint64_t>(std::min(bits / 8.0, kMaxBytes))});
       }
     }
     bytes += stream_->index_bytes(std::move(largest));

@@ -135,13 +135,13 @@ std::uint64_t StreamAssembly::cut_bytes(std::size_t layers) const {
     for (; rig != index.rigs.end() && rig->offset < offset; ++rig) {
       rig->offset -= removed;
     }
-    std::uint64_t of_gof = 0;
+    std::uint64_t gof_bytes = 0;
     for (std::size_t layer = layers; layer <= layer_bytes_[g].size(); ++layer) {
-      of_gof += layer_bytes_[g][layer - 1];
+      gof_bytes += layer_bytes_[g][layer - 1];
     }
     offset += index.gofs[g].bytes;
-    index.gofs[g].bytes -= of_gof;
-    removed += of_gof;
+    index.gofs[g].bytes -= gof_bytes;
+    removed += gof_bytes;
   }
   return written_ - removed - index_unit_bytes_ + index_unit(index).size();
 }

@@ -180,7 +180,7 @@ std::optional<InputError> StreamVerifier::finish(const Metrics& reported) {
   return std::nullopt;
 }
 
-InputResult<double> check_rounding(FrameSource& source, double most) {
+InputResult<double> check_rounding(FrameSource& source, double max) {
   if (!source.is_finer_than_floats()) return 0.0;
   const std::size_t n = source.num_vertices();
   std::vector<double> exact(3 * n);
@@ -199,11 +199,11 @@ InputResult<double> check_rounding(FrameSource& source, double most) {
                       " is " + text_of(d, 4) + " from the nearest 32-bit floats";
     }
   }
-  if (farthest <= most) return farthest;
+  if (farthest <= max) return farthest;
   error.message +=
       ", the farthest of all, and decoded positions are floats: the largest error "
       "cannot be " +
-      text_of(most) + ". Move the animation to the origin, or allow a larger error";
+      text_of(max) + ". Move the animation to the origin, or allow a larger error";
   return error;
 }
 

@@ -75,9 +75,9 @@ class StreamVerifier {
 };
 
 // Returns the largest distance of a vertex of a source from the floats nearest to its numbers,
-// in units. Error: it exceeds `most`, so that no decoded positions, which are floats, can be as
+// in units. Error: it exceeds `max`, so that no decoded positions, which are floats, can be as
 // near. Reads all frames, unless they are floats.
-InputResult<double> check_rounding(FrameSource& source, double most);
+InputResult<double> check_rounding(FrameSource& source, double max);
 
 // Checks a stream against the rules of the specification: all of it if the settings say so,
 // otherwise the contents from the input, up to the end of the first GOF. An error names the

@@ -42,7 +42,7 @@ inline double expected_component_cost(double energy, double vertices, double val
 
 // tuned (off: 1): Error of a coded value relative to that of a uniform quantiser, in forecasts
 // of errors. Most small values are rounded to zero and err by less than half a step.
-inline constexpr double kOfCoded = 0.6;
+inline constexpr double kCodedError = 0.6;
 // tuned (off: 1): Squared error of a temporal value relative to that of a spatial one, without
 // bones. Each temporal value affects all vertices and has few contexts to share its cost with.
 inline constexpr double kTemporalError = 0.8;
@@ -52,7 +52,7 @@ inline constexpr double kTemporalError = 0.8;
 inline double expected_component_error(double energy, double vertices, double frames,
                                        double step) {
   const double values = vertices + 3.0 * kTemporalError * frames;
-  const double quantised = kOfCoded * step * step / 12.0 * values;
+  const double quantised = kCodedError * step * step / 12.0 * values;
   return energy * quantised / (energy + quantised);
 }
 

@@ -40,27 +40,27 @@ class FakeCoder : public SpanCoder {
 
 class FakeKind : public KindEncoder {
  public:
-  // least: number of components of the likeliest kind from which this one may win.
-  FakeKind(std::size_t bytes, std::uint32_t least, Calls& calls)
-      : bytes_(bytes), least_(least), calls_(calls) {}
+  // min: number of components of the likeliest kind from which this one may win.
+  FakeKind(std::size_t bytes, std::uint32_t min, Calls& calls)
+      : bytes_(bytes), min_(min), calls_(calls) {}
   std::unique_ptr<SpanCoder> make_coder(const SpanFrames& /*frames*/) const override {
     return std::make_unique<FakeCoder>(bytes_, calls_);
   }
   bool may_win(const SpanFrames& /*frames*/, std::uint32_t components) const override {
     ++calls_.questions;
-    return components >= least_;
+    return components >= min_;
   }
 
  private:
   std::size_t bytes_;
-  std::uint32_t least_;
+  std::uint32_t min_;
   Calls& calls_;
 };
 
 struct Fixture {
-  void add(std::size_t bytes, std::uint32_t least) {
+  void add(std::size_t bytes, std::uint32_t min) {
     calls.push_back(std::make_unique<Calls>());
-    kinds.push_back(std::make_unique<FakeKind>(bytes, least, *calls.back()));
+    kinds.push_back(std::make_unique<FakeKind>(bytes, min, *calls.back()));
   }
   static std::size_t bytes(SpanCoder& search, double step) {
     return search.encode(step, step).units.front().payload.size();

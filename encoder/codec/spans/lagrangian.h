@@ -44,8 +44,8 @@ inline double lagrangian_cost(const EncodedSpan& encoded, const SpanFrames& fram
 inline double bits_at_equal_error(double bits, double squared_error) {
   // tuned (off: 0): The rate is about this power of the squared error.
   constexpr double kRateOfError = -0.25;
-  constexpr double kLeastError = 1e-6;  // fixed: above zero
-  return bits * det_exp2(-kRateOfError * det_log2(std::max(squared_error, kLeastError)));
+  constexpr double kMinError = 1e-6;  // fixed: above zero
+  return bits * det_exp2(-kRateOfError * det_log2(std::max(squared_error, kMinError)));
 }
 
 }  // namespace rlpc

@@ -20,10 +20,10 @@ inline std::vector<std::uint32_t> layer_group_sizes(const OrderedMesh& mesh,
   requested = std::min(requested, num_layers);
   std::vector<std::uint32_t> ends{num_layers};
   for (std::uint32_t last = num_layers; ends.size() < num_groups; ends.push_back(last)) {
-    const std::size_t most = mesh.vertices_of_layers(0, last).size() / 8;
+    const std::size_t max = mesh.vertices_of_layers(0, last).size() / 8;
     const auto num_ends = static_cast<std::uint32_t>(ends.size());
     const std::uint32_t first = std::max(requested, num_ends + 1) - num_ends;
-    while (last > first && mesh.vertices_of_layers(0, last).size() > most) --last;
+    while (last > first && mesh.vertices_of_layers(0, last).size() > max) --last;
     if (last == ends.back()) break;
   }
   std::vector<std::uint32_t> sizes;

@@ -23,9 +23,8 @@ inline constexpr double kDeadZone = kLambda / 2.0;  // fixed: arithmetic
 
 // Rounds the magnitude of `wanted` (in steps) up if its fraction is at least 1 - round_up.
 inline std::int32_t rounded_residual(double wanted, double round_up) {
-  constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
-  const auto magnitude =
-      static_cast<std::int32_t>(std::min(std::abs(wanted), kMost) + round_up);
+  constexpr double kMax = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
+  const auto magnitude = static_cast<std::int32_t>(std::min(std::abs(wanted), kMax) + round_up);
   return wanted < 0.0 ? -magnitude : magnitude;
 }
 
@@ -33,8 +32,8 @@ inline std::int32_t rounded_residual(double wanted, double round_up) {
 // cost under the models. The larger magnitude is considered only if it is nearer.
 inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expected,
                                      double wanted) {
-  constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
-  const double steps = std::min(std::abs(wanted), kMost);
+  constexpr double kMax = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
+  const double steps = std::min(std::abs(wanted), kMax);
   auto magnitude = static_cast<std::int32_t>(steps);
   const double fraction = steps - magnitude;
   const auto bits = [&](std::int32_t residual) {

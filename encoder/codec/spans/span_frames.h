@@ -30,14 +30,14 @@ struct SpanFrames {
 };
 
 // Returns the sum of squared distances between the frames and the decoded positions, or an
-// estimate from `most` evenly spaced frames. decode(f, positions) writes the positions of frame
+// estimate from `max` evenly spaced frames. decode(f, positions) writes the positions of frame
 // f, [num_vertices][3]; any thread may call it.
 template <typename Decode>
 double squared_error(const SpanFrames& frames, const Decode& decode,
-                     std::uint32_t most = 0xFFFFFFFF) {
+                     std::uint32_t max = 0xFFFFFFFF) {
   constexpr std::size_t kTogether = 8;  // fixed: frames of a pass
   const std::size_t values = std::size_t{frames.num_vertices} * 3;
-  const std::uint32_t count = std::min(most, frames.num_frames);
+  const std::uint32_t count = std::min(max, frames.num_frames);
   std::vector<double> sums(count);
   for_ranges(count, kTogether, [&](std::size_t first, std::size_t end) {
     std::vector<std::int32_t> positions(values);
@@ -56,7 +56,7 @@ double squared_error(const SpanFrames& frames, const Decode& decode,
     }
   });
   double sum = 0.0;
-  for (const double of_frame : sums) sum += of_frame;
+  for (const double frame_sum : sums) sum += frame_sum;
   return sum * frames.num_frames / count;
 }
 

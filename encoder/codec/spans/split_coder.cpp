@@ -73,9 +73,9 @@ EncodedSpan SplitCoder::encode(double step, double analysis_step) {
   }
   if (cuts.size() == gofs.size()) {
     all.cut = [gofs, cuts = std::move(cuts)](int layers) {
-      std::vector<DecodeFrame> of_parts;
-      for (const DecodeCut& cut : cuts) of_parts.push_back(cut(layers));
-      return frames_of_all(gofs, std::move(of_parts));
+      std::vector<DecodeFrame> part_decoders;
+      for (const DecodeCut& cut : cuts) part_decoders.push_back(cut(layers));
+      return frames_of_all(gofs, std::move(part_decoders));
     };
   }
   all.frame = frames_of_all(gofs, std::move(decoders));

@@ -56,15 +56,19 @@ void glue_all(std::uint32_t num_vertices, std::span<const Triangle> triangles,
   // first[v] is now the end of the entries of v.
   std::size_t begin = 0;
   for (std::uint32_t v = 0; v < num_vertices; ++v) {
-    const std::span<EdgeEntry> of_vertex(entries.data() + begin, first[v] - begin);
+    const std::span<EdgeEntry> vertex_entries(entries.data() + begin, first[v] - begin);
     begin = first[v];
-    std::sort(of_vertex.begin(), of_vertex.end(), [](const EdgeEntry& a, const EdgeEntry& b) {
-      return a.far_end != b.far_end ? a.far_end < b.far_end : a.half_edge < b.half_edge;
-    });
-    for (std::size_t i = 0; i < of_vertex.size();) {
+    std::sort(vertex_entries.begin(), vertex_entries.end(),
+              [](const EdgeEntry& a, const EdgeEntry& b) {
+                return a.far_end != b.far_end ? a.far_end < b.far_end
+                                              : a.half_edge < b.half_edge;
+              });
+    for (std::size_t i = 0; i < vertex_entries.size();) {
       std::size_t end = i + 1;
-      while (end < of_vertex.size() && of_vertex[end].far_end == of_vertex[i].far_end) ++end;
-      glue_edge(triangles, of_vertex.subspan(i, end - i), opposite);
+      while (end < vertex_entries.size() &&
+             vertex_entries[end].far_end == vertex_entries[i].far_end)
+        ++end;
+      glue_edge(triangles, vertex_entries.subspan(i, end - i), opposite);
       i = end;
     }
   }

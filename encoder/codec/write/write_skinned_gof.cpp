@@ -127,8 +127,8 @@ std::vector<std::uint8_t> SliceWriter::temporal_slice(std::uint32_t group, int t
     BoneWriter writer(section, frames_);
     for (const Bone& bone : gof_.bones) writer.layer(bone, temporal_layer);
   } else {
-    const FactorGroup of_group = tracks_of(group);
-    for (std::size_t l = of_group.first; l < of_group.end; ++l) {
+    const FactorGroup group_tracks = tracks_of(group);
+    for (std::size_t l = group_tracks.first; l < group_tracks.end; ++l) {
       const Trajectory& trajectory = gof_.trajectories[l - kRestFactors];
       if (trajectory.trajectory_flag) trajectory_residuals(section, trajectory, temporal_layer);
     }
@@ -139,9 +139,9 @@ std::vector<std::uint8_t> SliceWriter::temporal_slice(std::uint32_t group, int t
 
 // 6.12.1 group_components( )
 void SliceWriter::group_components(SectionWriter& section, std::uint32_t group) {
-  const FactorGroup of_group = factors(group);
-  header_value(section, HeaderField::kNumComponents, static_cast<int>(of_group.size()), 1);
-  for (std::size_t l = of_group.first; l < of_group.end; ++l) {
+  const FactorGroup group_tracks = factors(group);
+  header_value(section, HeaderField::kNumComponents, static_cast<int>(group_tracks.size()), 1);
+  for (std::size_t l = group_tracks.first; l < group_tracks.end; ++l) {
     const Trajectory& next = gof_.trajectories[l - kRestFactors];
     const bool has_tracks = unit_ != Unit::kRig;
     if (has_tracks) {
@@ -161,8 +161,8 @@ void SliceWriter::group_components(SectionWriter& section, std::uint32_t group) 
 
 // 6.13.2 tracks_of_group( )
 void SliceWriter::tracks_of_group(SectionWriter& section, std::uint32_t group) {
-  const FactorGroup of_group = factor_group(*shared_, group);
-  for (std::size_t l = of_group.first; l < of_group.end; ++l) {
+  const FactorGroup group_tracks = factor_group(*shared_, group);
+  for (std::size_t l = group_tracks.first; l < group_tracks.end; ++l) {
     const Trajectory& next = gof_.trajectories[l - kRestFactors];
     section.bin(models_.trajectory_flag, next.trajectory_flag);
     if (!next.trajectory_flag) continue;
@@ -277,9 +277,8 @@ SkinnedGofPayloads SliceWriter::write_all(std::vector<std::uint8_t> first,
   for (std::uint32_t group = 0; group < gof_.slice_layers.size(); ++group) {
     const bool has_only_tracks = unit_ == Unit::kTracks && group < first_own_group();
     if (has_only_tracks && group == 0) continue;
-    const std::uint32_t most = has_only_tracks ? 1 : gof_.slice_layers[group];
-    for (std::uint32_t layers = 0; layers < std::min(most, gof_.slice_layers[group]);
-         ++layers) {
+    const std::uint32_t max = has_only_tracks ? 1 : gof_.slice_layers[group];
+    for (std::uint32_t layers = 0; layers < std::min(max, gof_.slice_layers[group]); ++layers) {
       payloads.slices.push_back(write(group, layers));
     }
   }

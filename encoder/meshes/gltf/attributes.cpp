@@ -165,7 +165,7 @@ class AttributeCollector {
       set->domain = AttributeDomain::kTriangle;
       set->kind = SourceAttribute::Kind::kIntegers;
     }
-    constexpr std::size_t kMost = 65535;
+    constexpr std::size_t kMax = 65535;
     std::map<std::uint32_t, std::size_t> numbers;  // [node]
     for (const GltfModel::Instance& instance : model_.instances) {
       const std::size_t number =
@@ -173,8 +173,8 @@ class AttributeCollector {
       const std::size_t m = instance.material.value_or(model_.num_materials);
       const std::size_t count = geometry_of(instance).triangles.size();
       material.values.insert(material.values.end(), count,
-                             static_cast<float>(std::min(m, kMost)));
-      part.values.insert(part.values.end(), count, static_cast<float>(std::min(number, kMost)));
+                             static_cast<float>(std::min(m, kMax)));
+      part.values.insert(part.values.end(), count, static_cast<float>(std::min(number, kMax)));
     }
     const auto is_constant = [](const SourceAttribute& set) {
       return std::all_of(set.values.begin(), set.values.end(),

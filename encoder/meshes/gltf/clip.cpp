@@ -164,12 +164,12 @@ std::vector<std::uint32_t> animations_of(const GltfDocument& document, const std
 }  // namespace
 
 std::string gltf_animation_names(const GltfDocument& document) {
-  constexpr std::size_t kMost = 20;
+  constexpr std::size_t kMax = 20;
   std::string text;
-  for (std::size_t i = 0; i < document.animations.size() && i < kMost; ++i) {
+  for (std::size_t i = 0; i < document.animations.size() && i < kMax; ++i) {
     text += (i > 0 ? ", " : "") + gltf_quoted(document.animations[i].name);
   }
-  return text + (document.animations.size() > kMost ? ", ..." : "");
+  return text + (document.animations.size() > kMax ? ", ..." : "");
 }
 
 std::vector<std::uint32_t> choose_animations(const GltfDocument& document,

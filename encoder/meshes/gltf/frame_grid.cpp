@@ -15,11 +15,11 @@ namespace {
 using std::to_string;
 
 constexpr std::uint32_t kUsual = 30;
-constexpr std::uint32_t kLowest = 24;        // lowest tried; lower rates have multiples above
-constexpr std::uint32_t kHighest = 60;       // highest that needs no key at every other frame
-constexpr std::uint32_t kDense = 240;        // highest that needs such keys
-constexpr std::uint32_t kMostAdvised = 600;  // the least common multiple of 24, 25 and 60
-constexpr double kLimit = 1000.0;            // frames per second, for short clips
+constexpr std::uint32_t kLowest = 24;       // lowest tried; lower rates have multiples above
+constexpr std::uint32_t kHighest = 60;      // highest that needs no key at every other frame
+constexpr std::uint32_t kDense = 240;       // highest that needs such keys
+constexpr std::uint32_t kMaxAdvised = 600;  // the least common multiple of 24, 25 and 60
+constexpr double kLimit = 1000.0;           // frames per second, for short clips
 
 double frames_at(double seconds, const FrameRate& rate) {
   return seconds * rate.numerator / rate.denominator;
@@ -111,14 +111,14 @@ std::optional<GltfFrameGrid> shared_grid(const Keys& keys,
 // Returns the simplest fraction that is x > 0 to the precision of a 32-bit float, from the
 // continued fraction.
 FrameRate simplest_fraction(double x) {
-  constexpr double kMost = std::numeric_limits<std::uint32_t>::max();
+  constexpr double kMax = std::numeric_limits<std::uint32_t>::max();
   double before[2] = {0.0, 1.0};  // numerator, denominator
   double now[2] = {1.0, 0.0};
   double rest = x;
   for (;;) {
     const double whole = std::floor(rest);
     const double next[2] = {whole * now[0] + before[0], whole * now[1] + before[1]};
-    if (next[0] > kMost || next[1] > kMost) break;
+    if (next[0] > kMax || next[1] > kMax) break;
     std::copy(now, now + 2, before);
     std::copy(next, next + 2, now);
     if (std::abs(now[0] / now[1] - x) <= x * 0x1p-26 || rest == whole) break;
@@ -138,7 +138,7 @@ std::string note_of(const FrameRate& rate, const std::string& why, const Keys& k
   std::string note = std::string("the keys of the ") + of +
                      " on no common frame rate: sampled at " + rate_text(rate) +
                      " frames per second, " + why + "; 'frame_rate' sets another rate";
-  for (std::uint32_t n = kHighest + 1; n <= kMostAdvised; ++n) {
+  for (std::uint32_t n = kHighest + 1; n <= kMaxAdvised; ++n) {
     if (!all_on(GltfFrameGrid{{n, 1}}, keys)) continue;
     return note + ", " + to_string(n) + " has frames at all keys";
   }
@@ -194,7 +194,7 @@ GltfFrameGrid grid_to_end(double end, const Keys& keys) {
 // one with most keys.
 GltfFrameGrid grid_of_most(const Keys& keys) {
   GltfFrameGrid best{{kUsual, 1}};
-  std::pair<std::size_t, std::size_t> most;  // clips, keys
+  std::pair<std::size_t, std::size_t> max;  // clips, keys
   for (const FrameRate& rate : common_rates()) {
     const GltfFrameGrid grid{rate};
     std::pair<std::size_t, std::size_t> count;
@@ -203,7 +203,7 @@ GltfFrameGrid grid_of_most(const Keys& keys) {
       ++count.first;
       count.second += times.size();
     }
-    if (count > most) most = count, best = grid;
+    if (count > max) max = count, best = grid;
   }
   std::size_t num_moving = 0;
   double late = 0.0;
@@ -216,7 +216,7 @@ GltfFrameGrid grid_of_most(const Keys& keys) {
   late = late * best.rate.denominator / best.rate.numerator;
   best.note =
       note_of(best.rate,
-              "where those of " + to_string(most.first) + " of " + to_string(num_moving) +
+              "where those of " + to_string(max.first) + " of " + to_string(num_moving) +
                   " lie, and last poses come up to " +
                   shortest_text(static_cast<float>(std::ceil(late * 1e3) / 1e3)) + " s late",
               keys);

@@ -129,18 +129,18 @@ TEST_F(GltfSourceTest, FacesOfPrimitivesWithoutNormalsAreFlat) {
   EXPECT_TRUE(source->notes().empty());
   const SourceAttributes& all = source->attributes();
   ASSERT_EQ(all.sets[0].name, "normal");
-  const auto of_corner = [&](const std::vector<float>& values, std::size_t corner) {
+  const auto corner_values = [&](const std::vector<float>& values, std::size_t corner) {
     const std::size_t i = all.sets[0].value_of_corner[corner];
     return std::vector<float>(values.begin() + static_cast<std::ptrdiff_t>(3 * i),
                               values.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
   };
   ASSERT_EQ(all.first_normals.size(), all.sets[0].values.size());
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_EQ(of_corner(all.sets[0].values, k), (std::vector<float>{0, 0, 1}));
-    expect_near(of_corner(all.first_normals, k), {0, -1, 0});
+    EXPECT_EQ(corner_values(all.sets[0].values, k), (std::vector<float>{0, 0, 1}));
+    expect_near(corner_values(all.first_normals, k), {0, -1, 0});
   }
-  expect_near(of_corner(all.sets[0].values, 4), {0, 1, 0});
-  expect_near(of_corner(all.first_normals, 4), {0, 0, 1});
+  expect_near(corner_values(all.sets[0].values, 4), {0, 1, 0});
+  expect_near(corner_values(all.first_normals, 4), {0, 0, 1});
 }
 
 TEST_F(GltfSourceTest, AppliesMatricesOfNodes) {

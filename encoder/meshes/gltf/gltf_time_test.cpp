@@ -121,9 +121,9 @@ TEST_F(GltfTimeTest, FindsTheRateOfTheKeys) {
     EXPECT_EQ(source->num_frames(), 40U) << rate;
   }
   // Low rates have a multiple that moves smoothly.
-  for (const auto& [of_keys, rate] :
+  for (const auto& [keys, rate] :
        {std::pair{15U, 30U}, {12U, 24U}, {10U, 30U}, {8U, 24U}, {20U, 40U}, {5U, 30U}}) {
-    EXPECT_EQ(open_times({frames_at(of_keys, 40)})->frame_rate(), (FrameRate{rate, 1}));
+    EXPECT_EQ(open_times({frames_at(keys, 40)})->frame_rate(), (FrameRate{rate, 1}));
   }
 }
 

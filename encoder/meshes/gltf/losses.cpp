@@ -22,12 +22,12 @@ const Json& elements(const Json& value, const char* key) {
 }
 
 std::string joined(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 5;
+  constexpr std::size_t kMax = 5;
   std::string text;
-  for (std::size_t i = 0; i < names.size() && i < kMost; ++i) {
+  for (std::size_t i = 0; i < names.size() && i < kMax; ++i) {
     text += (i > 0 ? ", " : "") + names[i];
   }
-  return text + (names.size() > kMost ? ", ..." : "");
+  return text + (names.size() > kMax ? ", ..." : "");
 }
 
 std::string counted(std::size_t count, const std::string& one, const std::string& many) {
@@ -73,7 +73,7 @@ class LossFinder {
  private:
   void add_attributes() {
     std::set<std::string> names;
-    std::set<std::string> of_targets;
+    std::set<std::string> target_names;
     std::size_t without_positions = 0;
     for (const Json& mesh : elements(root_, "meshes")) {
       for (const Json& primitive : elements(mesh, "primitives")) {
@@ -86,14 +86,14 @@ class LossFinder {
         for (const Json& target : elements(primitive, "targets")) {
           if (!target.is_object()) continue;
           for (const auto& [name, unused] : target.items()) {
-            if (name != "POSITION" && name != "NORMAL") of_targets.insert(gltf_quoted(name));
+            if (name != "POSITION" && name != "NORMAL") target_names.insert(gltf_quoted(name));
           }
         }
       }
     }
     if (!names.empty()) found_.push_back("attributes " + joined({names.begin(), names.end()}));
-    if (!of_targets.empty()) {
-      found_.push_back("attributes " + joined({of_targets.begin(), of_targets.end()}) +
+    if (!target_names.empty()) {
+      found_.push_back("attributes " + joined({target_names.begin(), target_names.end()}) +
                        " of morph targets");
     }
     if (without_positions > 0) {

@@ -166,12 +166,12 @@ class ModelReader {
   // triangle.
   bool takes_instance(const GltfPrimitive& primitive, std::uint64_t num_vertices,
                       std::size_t geometry) {
-    constexpr std::uint64_t kOfVertex = 128;
-    constexpr std::uint64_t kOfTriangle = 60;
+    constexpr std::uint64_t kVertexBytes = 128;
+    constexpr std::uint64_t kTriangleBytes = 60;
     const std::uint64_t num_triangles = model_.geometries[geometry].triangles.size();
     return memory_.take(primitive.path, 3 * sizeof(GltfModel::Instance) +
-                                            kOfVertex * num_vertices +
-                                            kOfTriangle * num_triangles);
+                                            kVertexBytes * num_vertices +
+                                            kTriangleBytes * num_triangles);
   }
 
   // Returns the geometry, which nodes with the same mesh and skin share.
@@ -223,12 +223,12 @@ std::vector<std::optional<std::size_t>> relief_of_materials(const nlohmann::json
   for (std::size_t m = 0; m < num_materials; ++m) {
     const nlohmann::json& map = relief_of(root["materials"][m]);
     if (map.is_null()) continue;
-    constexpr std::size_t kMostSets = 256;
-    relief[m] = index_of(map, "texCoord", kMostSets).value_or(0);
+    constexpr std::size_t kMaxSets = 256;
+    relief[m] = index_of(map, "texCoord", kMaxSets).value_or(0);
     const auto& transform =
         gltf_member(gltf_member(map, "extensions"), "KHR_texture_transform");
     if (transform.is_null()) continue;
-    const auto other = index_of(transform, "texCoord", kMostSets);
+    const auto other = index_of(transform, "texCoord", kMaxSets);
     if (other) relief[m] = *other;
   }
   return relief;

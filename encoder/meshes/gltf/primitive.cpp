@@ -101,9 +101,9 @@ class GeometryReader {
     const auto normals = values_of("NORMAL");
     const auto uv = values_of("TEXCOORD_" + to_string(relief_uv));
     if (normals.empty() || uv.empty() || !has_count(*primitive_.tangents)) return;
-    constexpr std::uint64_t kOfCorner = 96;  // a sum of the comparison
-    const std::uint64_t bytes =
-        4 * sizeof(float) * geometry.num_vertices() + 3 * kOfCorner * geometry.triangles.size();
+    constexpr std::uint64_t kCornerBytes = 96;  // a sum of the comparison
+    const std::uint64_t bytes = 4 * sizeof(float) * geometry.num_vertices() +
+                                3 * kCornerBytes * geometry.triangles.size();
     if (!values_.memory().take(primitive_.path, bytes)) return;
     const std::vector<float> tangents =
         values_.floats(*primitive_.tangents, "VEC4", GltfValues::Integers::kToo);
@@ -115,9 +115,9 @@ class GeometryReader {
   }
 
   void read_influences(std::size_t num_joints, GltfGeometry& geometry) {
-    const std::uint64_t of_vertex =
+    const std::uint64_t vertex_bytes =
         3 * (sizeof(std::uint64_t) + 4 * primitive_.joints.size() * sizeof(GltfInfluence));
-    if (!values_.memory().take(primitive_.path, of_vertex * geometry.num_vertices())) return;
+    if (!values_.memory().take(primitive_.path, vertex_bytes * geometry.num_vertices())) return;
     if (primitive_.joints.empty()) {
       errors_.expected(primitive_.path + ".attributes", "no JOINTS_0 and WEIGHTS_0",
                        "them, as a node has a skin with this mesh");
@@ -190,9 +190,8 @@ class GeometryReader {
 
   std::vector<Triangle> triangles(const std::vector<std::uint32_t>& c) {
     std::vector<Triangle> triangles;
-    const std::uint64_t most =
-        primitive_.mode == GltfMode::kTriangles ? c.size() / 3 : c.size();
-    if (!values_.memory().take(primitive_.path, 3 * sizeof(Triangle) * most)) return triangles;
+    const std::uint64_t max = primitive_.mode == GltfMode::kTriangles ? c.size() / 3 : c.size();
+    if (!values_.memory().take(primitive_.path, 3 * sizeof(Triangle) * max)) return triangles;
     if (primitive_.mode == GltfMode::kTriangles) {
       if (c.size() % 3 != 0) {
         errors_.expected(

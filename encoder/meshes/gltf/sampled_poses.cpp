@@ -7,8 +7,8 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kMostExamined = 4096;               // fixed: frames, for time
-constexpr std::size_t kMostVolumes = std::size_t{1} << 20;  // fixed: memory, and time
+constexpr std::uint32_t kMaxExamined = 4096;               // fixed: frames, for time
+constexpr std::size_t kMaxVolumes = std::size_t{1} << 20;  // fixed: memory, and time
 constexpr double kShown = 0.125;  // fixed: part of the largest volume; half of the size
 
 // Returns the nodes that place vertices: those of instances without skin, and joints.
@@ -54,10 +54,10 @@ class NodeVolumes {
   bool turns_over(std::uint32_t node) const {
     constexpr double kVisible = 1e-6;  // fixed: of the largest volume: a hundredth of the size
     const std::size_t n = index_of(node);
-    const double least = kVisible * size(n, largest(n));
+    const double min = kVisible * size(n, largest(n));
     const auto has = [&](double sign) {
       return std::any_of(volumes_[n].begin(), volumes_[n].end(),
-                         [&](double x) { return sign * x > least; });
+                         [&](double x) { return sign * x > min; });
     };
     return has(1.0) && has(-1.0);
   }
@@ -85,13 +85,13 @@ std::vector<std::uint32_t> spread_out(std::uint32_t num_frames, std::size_t coun
 
 }  // namespace
 
-SampledPoses sample_poses(const GltfModel& model, std::uint32_t num_frames, std::size_t most,
+SampledPoses sample_poses(const GltfModel& model, std::uint32_t num_frames, std::size_t max,
                           const std::function<GltfPose(std::uint32_t)>& pose_at) {
   std::vector<std::uint32_t> nodes = placing_nodes(model);
-  const std::size_t most_frames =
-      std::clamp<std::size_t>(kMostVolumes / (nodes.size() + 1), 2, kMostExamined);
+  const std::size_t max_frames =
+      std::clamp<std::size_t>(kMaxVolumes / (nodes.size() + 1), 2, kMaxExamined);
   const std::vector<std::uint32_t> examined =
-      spread_out(num_frames, std::min<std::size_t>(num_frames, most_frames));
+      spread_out(num_frames, std::min<std::size_t>(num_frames, max_frames));
   NodeVolumes volumes(std::move(nodes), examined.size());
   for (std::size_t i = 0; i < examined.size(); ++i) volumes.set(i, pose_at(examined[i]));
   SampledPoses sampled;
@@ -101,12 +101,12 @@ SampledPoses sample_poses(const GltfModel& model, std::uint32_t num_frames, std:
   }
   // Half of the frames are at equal distances, the others where nodes are largest.
   std::vector<std::size_t> chosen{0};
-  const std::vector<std::uint32_t> even = spread_out(num_frames, 1 + (most + 1) / 2);
+  const std::vector<std::uint32_t> even = spread_out(num_frames, 1 + (max + 1) / 2);
   for (const std::uint32_t f : even) {
     chosen.push_back(static_cast<std::size_t>(
         std::lower_bound(examined.begin(), examined.end(), f) - examined.begin()));
   }
-  for (std::size_t n = 0; n < volumes.count() && chosen.size() <= most + 1; ++n) {
+  for (std::size_t n = 0; n < volumes.count() && chosen.size() <= max + 1; ++n) {
     const std::size_t largest = volumes.largest(n);
     const bool is_shown = std::any_of(chosen.begin(), chosen.end(), [&](std::size_t i) {
       return volumes.size(n, i) >= kShown * volumes.size(n, largest);
@@ -116,7 +116,7 @@ SampledPoses sample_poses(const GltfModel& model, std::uint32_t num_frames, std:
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   for (const std::size_t i : chosen) {
-    if (i > 0 && most > 0) sampled.later.push_back({examined[i], pose_at(examined[i])});
+    if (i > 0 && max > 0) sampled.later.push_back({examined[i], pose_at(examined[i])});
   }
   return sampled;
 }

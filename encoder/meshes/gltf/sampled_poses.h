@@ -26,7 +26,7 @@ struct SampledPoses {
 // Samples frames at equal distances and, for each node that is much smaller in these than in
 // some other frame, that frame. pose_at: returns the pose of a frame. most: number of frames
 // after the first. Takes as long as evaluating the nodes of some thousand frames.
-SampledPoses sample_poses(const GltfModel& model, std::uint32_t num_frames, std::size_t most,
+SampledPoses sample_poses(const GltfModel& model, std::uint32_t num_frames, std::size_t max,
                           const std::function<GltfPose(std::uint32_t)>& pose_at);
 
 }  // namespace rlpc

@@ -25,16 +25,15 @@ InputResult<std::vector<std::uint32_t>> first_frames(const GltfModel& model,
                                                      const GltfFrameGrid& grid,
                                                      const std::string& path,
                                                      const GltfLimits& limits) {
-  const std::uint64_t most =
+  const std::uint64_t max =
       std::min(limits.max_frames, limits.max_positions / model.num_vertices);
   std::vector<std::uint32_t> first{0};
   for (const GltfClip& clip : model.clips) {
     const double frames = first.back() + grid.num_frames(clip);
-    if (frames > static_cast<double>(most)) {
+    if (frames > static_cast<double>(max)) {
       return InputError{path + ": animations: found more frames of " +
-                        to_string(model.num_vertices) + " vertices than the " +
-                        to_string(most) + " that are expected at most; the last time is " +
-                        to_string(clip.end) +
+                        to_string(model.num_vertices) + " vertices than the " + to_string(max) +
+                        " that are expected at most; the last time is " + to_string(clip.end) +
                         " s: choose one animation, or a lower 'frame_rate'"};
     }
     first.push_back(static_cast<std::uint32_t>(frames));
@@ -54,11 +53,11 @@ GltfPose pose_at(const GltfModel& model, const std::vector<std::uint32_t>& first
 
 // Returns the number of frames whose normals are compared; fewer for large models.
 std::size_t frames_with_normals(const GltfModel& model, std::uint64_t max_memory_bytes) {
-  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 27;  // fixed: memory
-  constexpr std::uint64_t kPart = 64;                           // fixed: divides the limit
-  constexpr std::uint64_t kMost = 15;                           // fixed: time
-  const std::uint64_t bytes = std::min(kMostBytes, max_memory_bytes / kPart);
-  return std::clamp<std::uint64_t>(bytes / (3 * sizeof(float) * model.num_vertices), 2, kMost);
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 27;  // fixed: memory
+  constexpr std::uint64_t kPart = 64;                          // fixed: divides the limit
+  constexpr std::uint64_t kMax = 15;                           // fixed: time
+  const std::uint64_t bytes = std::min(kMaxBytes, max_memory_bytes / kPart);
+  return std::clamp<std::uint64_t>(bytes / (3 * sizeof(float) * model.num_vertices), 2, kMax);
 }
 
 // Returns the triangles. Mirroring nodes flip them, so that they keep facing the same side

@@ -49,10 +49,10 @@ GltfQuaternion slerp(const GltfQuaternion& a, GltfQuaternion b, double part) {
   // Exact for small angles too, unlike an arc cosine of the dot product.
   const double angle = 2.0 * det_atan(std::min(length_of(difference) / length_of(sum), 1.0));
   const double sine = det_sin(angle);
-  const double of_a = sine > 0 ? det_sin((1.0 - part) * angle) / sine : 1.0 - part;
-  const double of_b = sine > 0 ? det_sin(part * angle) / sine : part;
+  const double weight_a = sine > 0 ? det_sin((1.0 - part) * angle) / sine : 1.0 - part;
+  const double weight_b = sine > 0 ? det_sin(part * angle) / sine : part;
   GltfQuaternion result{};
-  for (std::size_t i = 0; i < 4; ++i) result[i] = of_a * a[i] + of_b * b[i];
+  for (std::size_t i = 0; i < 4; ++i) result[i] = weight_a * a[i] + weight_b * b[i];
   return unit_quaternion(result);
 }
 

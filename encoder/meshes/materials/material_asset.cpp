@@ -137,15 +137,16 @@ class AssetMaker {
 
 std::uint64_t material_asset_bytes(const SourceMaterials& materials) {
   // Bytes of texts and tree of a material with all members, and of the name of a part.
-  constexpr std::uint64_t kOfMaterial = 8192;
-  constexpr std::uint64_t kOfName = 1024;
-  constexpr std::uint64_t kOfByte = 8;
+  constexpr std::uint64_t kMaterialBytes = 8192;
+  constexpr std::uint64_t kNameBytes = 1024;
+  constexpr std::uint64_t kByteCost = 8;
   const bool is_described = !materials.mtl.empty();
   std::uint64_t bytes = 0;
   for (const std::string& name : materials.names) {
-    bytes += (is_described ? kOfMaterial : kOfName) + kOfByte * name.size();
+    bytes += (is_described ? kMaterialBytes : kNameBytes) + kByteCost * name.size();
   }
-  for (const std::string& name : materials.part_names) bytes += kOfName + kOfByte * name.size();
+  for (const std::string& name : materials.part_names)
+    bytes += kNameBytes + kByteCost * name.size();
   return bytes;
 }
 

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // Memory per byte of an .mtl file: the text, and lists of the images that it names.
-constexpr std::uint64_t kOfMtl = 40;
+constexpr std::uint64_t kMtlCost = 40;
 
 // Returns the folder, never empty, so that no file in it is "-", which is standard input.
 std::string folder_of(const std::string& path) {
@@ -89,7 +89,7 @@ void note_only_names(SingleMesh& mesh) {
 // Returns an error if that takes more memory than is allowed.
 std::optional<InputError> make_asset(const std::string& path, bool textures,
                                      std::uint64_t max_memory_bytes, SingleMesh& mesh) {
-  const std::uint64_t held = mesh.memory_bytes() + kOfMtl * mesh.materials.mtl.size() +
+  const std::uint64_t held = mesh.memory_bytes() + kMtlCost * mesh.materials.mtl.size() +
                              material_asset_bytes(mesh.materials);
   if (held > max_memory_bytes) {
     return InputError{path + ": materials and parts: " + memory_problem(max_memory_bytes)};
@@ -127,15 +127,15 @@ void read_material_text(const std::string& path, std::uint64_t max_memory_bytes,
       continue;
     }
     const std::string file = (folder / name).string();
-    const std::uint64_t held = mesh.memory_bytes() + kOfMtl * mesh.materials.mtl.size();
+    const std::uint64_t held = mesh.memory_bytes() + kMtlCost * mesh.materials.mtl.size();
     const std::uint64_t left = max_memory_bytes - std::min(held, max_memory_bytes);
     // Only part of the memory is for the text, but messages name the whole limit.
     std::error_code unknown;
-    if (const auto size = fs::file_size(file, unknown); !unknown && size > left / kOfMtl) {
+    if (const auto size = fs::file_size(file, unknown); !unknown && size > left / kMtlCost) {
       note_unread("materials: " + file + ": " + memory_problem(max_memory_bytes));
       continue;
     }
-    auto text = read_whole_file(file, left / kOfMtl);
+    auto text = read_whole_file(file, left / kMtlCost);
     if (!text) {
       note_unread("materials: " + text.error().message);
       continue;

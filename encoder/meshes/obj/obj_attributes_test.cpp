@@ -145,9 +145,9 @@ TEST(ObjAttributes, MemoryHasALimit) {
   const std::string text = kVertices + "vt 0 0\nvt 1 1\nvn 0 0 1\no a\nf 1/1 2/2 3/1\n" +
                            "usemtl b\nusemtl c\nf 1/1/1 2/2/1 3/1/1 4/2/1\n";
   MeshLimit limit{1 << 20, 0};
-  while (!parse_obj(text, "a", limit)) ++limit.of_mesh;
-  EXPECT_GE(limit.of_mesh, mesh_of(text).memory_bytes());
-  EXPECT_LE(limit.of_mesh, 3000U);
+  while (!parse_obj(text, "a", limit)) ++limit.mesh_bytes;
+  EXPECT_GE(limit.mesh_bytes, mesh_of(text).memory_bytes());
+  EXPECT_LE(limit.mesh_bytes, 3000U);
 }
 
 TEST(MaterialFiles, TexturesAreListedOnce) {

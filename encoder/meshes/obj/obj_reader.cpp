@@ -79,7 +79,7 @@ class ObjParser {
                            "faces of the first")};
   }
 
-  void fail_for_memory() { fail(words_.line(), memory_problem(limit_.of_all)); }
+  void fail_for_memory() { fail(words_.line(), memory_problem(limit_.total_bytes)); }
 
   static std::string out_of_range(const Indexed& kind, std::int64_t index, std::int64_t count) {
     return kind.name + std::string(" index ") + std::to_string(index) +

@@ -174,19 +174,19 @@ TEST(MeshReader, MemoryHasALimit) {
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
       "property float z\nelement face 2\nproperty list uchar int vertex_index\nend_header\n"
       "0 0 0\n1 0 0\n0 1 0\n5 0 1 2 0 1\n5 0 1 2 0 1\n";
-  const auto least = [](const auto& parse, const std::string& text) {
+  const auto min = [](const auto& parse, const std::string& text) {
     MeshLimit limit{1 << 20, 0};
     while (true) {
       const auto mesh = parse(text, "a", limit);
-      if (mesh) return limit.of_mesh;
+      if (mesh) return limit.mesh_bytes;
       EXPECT_NE(mesh.error().message.find("needs more memory than the limit of 1 MiB"),
                 std::string::npos)
           << mesh.error().message;
-      ++limit.of_mesh;
+      ++limit.mesh_bytes;
     }
   };
   for (const std::uint64_t bytes :
-       {least(parse_obj, obj), least(parse_off, off), least(parse_ply, ply)}) {
+       {min(parse_obj, obj), min(parse_off, off), min(parse_ply, ply)}) {
     EXPECT_GE(bytes, 9 * sizeof(float) + 6 * sizeof(Triangle));
     EXPECT_LE(bytes, 1000);
   }

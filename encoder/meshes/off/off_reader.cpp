@@ -42,7 +42,7 @@ class OffParser {
       if (!words_.next_of_any_line().empty()) fail("has data after the last face");
     }
     note_what_is_dropped();
-    if (!error_ && !cut_polygons(mesh_, limit_)) fail(memory_problem(limit_.of_all));
+    if (!error_ && !cut_polygons(mesh_, limit_)) fail(memory_problem(limit_.total_bytes));
     if (error_) return *error_;
     return std::move(mesh_);
   }
@@ -96,7 +96,7 @@ class OffParser {
         problem = words_.at_end() ? "the file ends before the last vertex; is it complete?"
                                   : "a vertex needs three coordinates";
       } else if (!limit_.leaves_room(mesh_, mesh_.xyz)) {
-        problem = memory_problem(limit_.of_all);
+        problem = memory_problem(limit_.total_bytes);
       } else {
         mesh_.left.push_back(0.0F);
         mesh_.xyz.push_back(parse_coordinate(word, problem, &mesh_.left.back()));
@@ -124,12 +124,12 @@ class OffParser {
       fan[i < 2 ? i : 2] = vertex;
       if (i < 2) continue;
       if (!limit_.leaves_room(mesh_, mesh_.triangles)) {
-        return fail(memory_problem(limit_.of_all));
+        return fail(memory_problem(limit_.total_bytes));
       }
       mesh_.triangles.push_back(fan);
     }
     extra_of_faces_ |= !words_.next().empty();
-    if (!limit_.add_face(mesh_, first_triangle)) fail(memory_problem(limit_.of_all));
+    if (!limit_.add_face(mesh_, first_triangle)) fail(memory_problem(limit_.total_bytes));
   }
 
   TextWords words_;

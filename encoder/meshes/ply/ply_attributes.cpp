@@ -207,7 +207,7 @@ std::optional<std::string> PlyAttributes::end_face(std::size_t num_triangles,
       push(materials_, static_cast<std::uint32_t>(material_));
     }
   }
-  if (!has_room) return memory_problem(limit.of_all);
+  if (!has_room) return memory_problem(limit.total_bytes);
   return std::nullopt;
 }
 

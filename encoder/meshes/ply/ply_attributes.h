@@ -42,8 +42,8 @@ class PlyAttributes {
   // Finds the role of each property of `vertex` and `face`. Without with_attributes: only
   // positions and polygons.
   void find_roles(const PlyHeader& header, bool with_attributes);
-  const std::vector<PlyRole>& of_vertices() const { return vertex_roles_; }
-  const std::vector<PlyRole>& of_faces() const { return face_roles_; }
+  const std::vector<PlyRole>& vertex_roles() const { return vertex_roles_; }
+  const std::vector<PlyRole>& face_roles() const { return face_roles_; }
 
   // Returns properties and elements without a role, by name: "stress of vertex"; empty: none.
   // Call it after find_roles() with attributes.

@@ -14,11 +14,12 @@ namespace {
 using Floats = std::vector<float>;
 using Indices = std::vector<std::uint32_t>;
 
-std::string header(const std::string& encoding, const std::string& of_vertex,
-                   const std::string& of_face) {
+std::string header(const std::string& encoding, const std::string& vertex_properties,
+                   const std::string& face_properties) {
   return "ply\nformat " + encoding + " 1.0\ncomment TextureFile skin.png\nelement vertex 4\n" +
-         "property float x\nproperty float y\nproperty float z\n" + of_vertex +
-         "element face 1\nproperty list uchar int vertex_indices\n" + of_face + "end_header\n";
+         "property float x\nproperty float y\nproperty float z\n" + vertex_properties +
+         "element face 1\nproperty list uchar int vertex_indices\n" + face_properties +
+         "end_header\n";
 }
 
 SingleMesh mesh_of(const std::string& text) {
@@ -28,9 +29,10 @@ SingleMesh mesh_of(const std::string& text) {
 }
 
 // Returns a text mesh with the same numbers after the position of each vertex.
-SingleMesh text_mesh(const std::string& of_vertex, const std::string& values,
-                     const std::string& of_face = "", const std::string& face_values = "") {
-  std::string text = header("ascii", of_vertex, of_face);
+SingleMesh text_mesh(const std::string& vertex_properties, const std::string& values,
+                     const std::string& face_properties = "",
+                     const std::string& face_values = "") {
+  std::string text = header("ascii", vertex_properties, face_properties);
   for (const char* const xyz : {"0 0 0 ", "1 0 0 ", "1 1 0 ", "0 1 0 "}) {
     text += xyz + values + "\n";
   }
@@ -146,9 +148,9 @@ TEST(PlyAttributes, ReadsBinaryFiles) {
     EXPECT_FALSE(parse_ply(bytes.substr(0, n), "a.ply")) << n;
   }
   MeshLimit limit{1 << 20, 0};
-  while (!parse_ply(bytes, "a", limit)) ++limit.of_mesh;
-  EXPECT_GE(limit.of_mesh, mesh_of(bytes).memory_bytes());
-  EXPECT_LE(limit.of_mesh, 1000U);
+  while (!parse_ply(bytes, "a", limit)) ++limit.mesh_bytes;
+  EXPECT_GE(limit.mesh_bytes, mesh_of(bytes).memory_bytes());
+  EXPECT_LE(limit.mesh_bytes, 1000U);
 }
 
 }  // namespace

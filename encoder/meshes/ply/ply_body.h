@@ -28,7 +28,7 @@ class TextBody {
   std::uint64_t bytes_left() const { return bytes_ - words_.position(); }
   // Returns the smallest size of a value: a character and a separator, which the last value may
   // lack.
-  static std::uint64_t least_bytes(PlyType) { return 2; }
+  static std::uint64_t min_bytes(PlyType) { return 2; }
   static std::uint64_t spare_bytes() { return 1; }
 
   float coordinate(PlyType) {
@@ -87,7 +87,7 @@ class BinaryBody {
   std::string place() const { return ": byte " + std::to_string(last_); }
   const std::optional<std::string>& problem() const { return problem_; }
   std::uint64_t bytes_left() const { return text_.size() - pos_; }
-  static std::uint64_t least_bytes(PlyType type) { return ply_bytes(type); }
+  static std::uint64_t min_bytes(PlyType type) { return ply_bytes(type); }
   static std::uint64_t spare_bytes() { return 0; }
 
   float coordinate(PlyType type) {

@@ -69,14 +69,14 @@ class PlyReader {
   }
 
   InputError too_large() const {
-    return InputError{name_ + ": " + memory_problem(limit_.of_all)};
+    return InputError{name_ + ": " + memory_problem(limit_.total_bytes)};
   }
 
   // Checks, before memory is allocated, that the counts of the header are possible and usable.
   std::optional<InputError> check(const PlyElement& element) const {
     std::uint64_t row_bytes = 0;
     for (const PlyProperty& p : element.properties) {
-      row_bytes += Body::least_bytes(p.length.value_or(p.type));
+      row_bytes += Body::min_bytes(p.length.value_or(p.type));
     }
     // Cannot overflow: a count has 32 bits, and a row has only a few bytes per line of the
     // header.
@@ -89,7 +89,7 @@ class PlyReader {
     }
     if (element.name == "vertex") {
       const std::uint64_t floats = 3 + attributes_.floats_per_vertex();
-      if (element.count * floats * sizeof(float) > limit_.of_mesh) return too_large();
+      if (element.count * floats * sizeof(float) > limit_.mesh_bytes) return too_large();
       for (const char* axis : {"x", "y", "z"}) {
         if (is_scalar(element, axis)) continue;
         return InputError{name_ + ": element \"vertex\" has no number " + axis};
@@ -97,7 +97,7 @@ class PlyReader {
     } else if (element.name == "face" && element.count > 0) {
       bool found = false;
       for (std::size_t i = 0; i < element.properties.size(); ++i) {
-        found |= attributes_.of_faces()[i].kind == PlyRole::Kind::kPolygon &&
+        found |= attributes_.face_roles()[i].kind == PlyRole::Kind::kPolygon &&
                  !is_ply_float(element.properties[i].type);
       }
       if (!found) {
@@ -125,7 +125,7 @@ class PlyReader {
     attributes_.set_num_vertices(element.count);
     for (std::size_t v = 0; v < element.count; ++v) {
       for (std::size_t i = 0; i < element.properties.size(); ++i) {
-        const PlyRole& role = attributes_.of_vertices()[i];
+        const PlyRole& role = attributes_.vertex_roles()[i];
         const PlyProperty& p = element.properties[i];
         if (role.kind == PlyRole::Kind::kSkipped) {
           skip(p);
@@ -151,11 +151,11 @@ class PlyReader {
     for (std::uint32_t f = 0; f < element.count; ++f) {
       const std::size_t first = mesh_.triangles.size();
       for (std::size_t i = 0; i < element.properties.size() && !failed(); ++i) {
-        read_of_face(attributes_.of_faces()[i], element.properties[i]);
+        read_of_face(attributes_.face_roles()[i], element.properties[i]);
       }
       if (failed()) return;
       if (!limit_.add_face(mesh_, first)) {
-        problem_ = memory_problem(limit_.of_all);
+        problem_ = memory_problem(limit_.total_bytes);
         return;
       }
       problem_ = attributes_.end_face(mesh_.triangles.size() - first, mesh_, limit_);
@@ -187,7 +187,7 @@ class PlyReader {
       const float value = body_.coordinate(list.type);
       if (failed()) return;
       if (!limit_.leaves_room(mesh_, uv)) {
-        problem_ = memory_problem(limit_.of_all);
+        problem_ = memory_problem(limit_.total_bytes);
         return;
       }
       uv.push_back(value);
@@ -214,7 +214,7 @@ class PlyReader {
       fan[i < 2 ? static_cast<std::size_t>(i) : 2] = vertex;
       if (i < 2) continue;
       if (!limit_.leaves_room(mesh_, mesh_.triangles)) {
-        problem_ = memory_problem(limit_.of_all);
+        problem_ = memory_problem(limit_.total_bytes);
         return;
       }
       mesh_.triangles.push_back(fan);

@@ -30,12 +30,12 @@ void move_corners(const std::vector<std::uint32_t>& corner_of, SourceAttributes&
 
 // Returns the corners of a face, counted from 1, as in OBJ files.
 std::string corners(const std::vector<std::uint32_t>& vertices) {
-  constexpr std::size_t kMost = 8;
+  constexpr std::size_t kMax = 8;
   std::string text = "f";
-  for (std::size_t k = 0; k < std::min(kMost, vertices.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(kMax, vertices.size()); ++k) {
     text += " " + std::to_string(std::uint64_t{vertices[k]} + 1);
   }
-  return text + (vertices.size() > kMost ? " ..." : "");
+  return text + (vertices.size() > kMax ? " ..." : "");
 }
 
 }  // namespace

@@ -41,10 +41,10 @@ std::size_t max_frames(std::size_t num_corners, std::uint64_t max_memory_bytes) 
   return std::min(fit, std::clamp<std::uint64_t>(kMaxCorners / num_corners, kMin, kMax));
 }
 
-// Returns frames 1 to num_frames - 1, or `most` of them at equal distances, the last included.
-std::vector<std::uint32_t> spread_out(std::size_t num_frames, std::size_t most) {
+// Returns frames 1 to num_frames - 1, or `max` of them at equal distances, the last included.
+std::vector<std::uint32_t> spread_out(std::size_t num_frames, std::size_t max) {
   const std::size_t later = num_frames - 1;
-  const std::size_t count = std::min(later, most);
+  const std::size_t count = std::min(later, max);
   std::vector<std::uint32_t> frames;
   for (std::size_t i = 1; i <= count; ++i) {
     frames.push_back(static_cast<std::uint32_t>(later * i / count));

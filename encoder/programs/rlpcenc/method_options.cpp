@@ -127,10 +127,10 @@ void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
 void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
   const std::string baseline = "Baseline profile only: parameters of the RLPCA paper";
   BaselineTools& t = line.options.settings.baseline;
-  const auto add_number = [&](const char* name, auto& value, int least, int most,
+  const auto add_number = [&](const char* name, auto& value, int min, int max,
                               const char* what) {
     app.add_option(name, value, what)
-        ->check(CLI::Range(least, most))
+        ->check(CLI::Range(min, max))
         ->option_text("N")
         ->group(baseline);
   };
@@ -176,10 +176,10 @@ void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
 void add_main_options(CLI::App& app, EncodeCommandLine& line) {
   const std::string tools = "Main and High profiles only; any of these disables cluster GOFs";
   MainTools& t = line.options.settings.main;
-  const auto add_number = [&](const char* name, std::uint32_t& value, std::uint32_t most,
+  const auto add_number = [&](const char* name, std::uint32_t& value, std::uint32_t max,
                               const char* what) {
     app.add_option(name, value, what)
-        ->check(CLI::Range(std::uint32_t{1}, most))
+        ->check(CLI::Range(std::uint32_t{1}, max))
         ->option_text("N")
         ->group(tools);
   };

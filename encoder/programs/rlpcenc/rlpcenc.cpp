@@ -97,11 +97,12 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
                 cut.kg_error_percent);
   }
   if (!o.verbose) return;
-  for (const PatternCount& of_pattern : r.patterns) {
-    std::printf("  %u inter GOF%s with pattern %s", of_pattern.gofs, s(of_pattern.gofs),
-                frame_pattern_text(of_pattern.pattern).c_str());
-    if (of_pattern.patches > 0) {
-      std::printf(" and %u patch%s", of_pattern.patches, of_pattern.patches == 1 ? "" : "es");
+  for (const PatternCount& pattern_count : r.patterns) {
+    std::printf("  %u inter GOF%s with pattern %s", pattern_count.gofs, s(pattern_count.gofs),
+                frame_pattern_text(pattern_count.pattern).c_str());
+    if (pattern_count.patches > 0) {
+      std::printf(" and %u patch%s", pattern_count.patches,
+                  pattern_count.patches == 1 ? "" : "es");
     }
     std::printf("\n");
   }

@@ -47,15 +47,15 @@ double seed_bits(const ClusterGof& gof) {
 
 void choose_seed_predictor(ClusterGof& gof, const SpanFrames& frames, int position_bits) {
   ClusterGof best = gof;
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (int order = 1; order <= kMaxPredictorOrder; ++order) {
     for (const bool coupling : {false, true}) {
       gof.seed_predictor = order;
       gof.seed_coupling_flag = coupling;
       code_seed_tracks(gof, frames, position_bits);
       const double bits = seed_bits(gof);
-      if (bits >= least) continue;
-      least = bits;
+      if (bits >= min) continue;
+      min = bits;
       best = gof;
     }
   }

@@ -63,18 +63,19 @@ Clustering MotionClusters::clusters(std::uint32_t count) {
   Clustering clustering;
   clustering.seeds.assign(seeds_.begin(), seeds_.begin() + static_cast<std::ptrdiff_t>(found));
   clustering.cluster_of_vertex.assign(frames_.num_vertices, 0);
-  std::vector<double> least(frames_.num_vertices, std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < found; ++i) assign(clustering, i, motion_[i], least);
+  std::vector<double> min_motion(frames_.num_vertices, std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < found; ++i) assign(clustering, i, motion_[i], min_motion);
   return clustering;
 }
 
 // Assigns to cluster i the vertices that move less in its coordinates than in those of clusters
 // 0 to i - 1.
 void MotionClusters::assign(Clustering& clustering, std::size_t i,
-                            const std::vector<double>& motion, std::vector<double>& least) {
+                            const std::vector<double>& motion,
+                            std::vector<double>& min_motion) {
   for (std::uint32_t v = 0; v < motion.size(); ++v) {
-    if (motion[v] >= least[v]) continue;
-    least[v] = motion[v];
+    if (motion[v] >= min_motion[v]) continue;
+    min_motion[v] = motion[v];
     clustering.cluster_of_vertex[v] = static_cast<std::uint16_t>(i);
   }
 }
@@ -83,7 +84,7 @@ Clustering MotionClusters::spread_clusters(std::uint32_t count) {
   Clustering clustering = clusters(count);
   constexpr std::size_t kTogether = 16;  // fixed: memory
   const Clustering before = clustering;
-  std::vector<double> least(frames_.num_vertices, std::numeric_limits<double>::infinity());
+  std::vector<double> min_motion(frames_.num_vertices, std::numeric_limits<double>::infinity());
   for (std::size_t first = 0; first < before.seeds.size(); first += kTogether) {
     std::vector<std::vector<double>> motion(std::min(kTogether, before.seeds.size() - first));
     for_each(motion.size(), [&](std::size_t i) {
@@ -93,7 +94,7 @@ Clustering MotionClusters::spread_clusters(std::uint32_t count) {
       motion[i] = choice_.motion_in(clustering.seeds[at]);
     });
     for (std::size_t i = 0; i < motion.size(); ++i) {
-      assign(clustering, first + i, motion[i], least);
+      assign(clustering, first + i, motion[i], min_motion);
     }
   }
   return clustering;

@@ -63,7 +63,7 @@ class MotionClusters : public ClusterMaker {
  private:
   bool add_seed();
   static void assign(Clustering& clustering, std::size_t i, const std::vector<double>& motion,
-                     std::vector<double>& least);
+                     std::vector<double>& min_motion);
 
   const SpanFrames& frames_;
   SeedChoice choice_;

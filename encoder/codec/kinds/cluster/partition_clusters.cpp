@@ -9,8 +9,8 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kCentral = 16;    // fixed: vertices whose triangles are compared
-constexpr std::size_t kMostTried = 64;  // fixed: time; then the part has no seed
+constexpr std::size_t kCentral = 16;   // fixed: vertices whose triangles are compared
+constexpr std::size_t kMaxTried = 64;  // fixed: time; then the part has no seed
 
 std::vector<std::uint32_t> nearest_to_centre(const SpanFrames& frames,
                                              std::vector<std::uint32_t> vertices) {
@@ -19,13 +19,13 @@ std::vector<std::uint32_t> nearest_to_centre(const SpanFrames& frames,
     for (std::size_t c = 0; c < 3; ++c) centre[c] += frames.at(0, v)[c];
   }
   for (double& c : centre) c /= static_cast<double>(vertices.size());
-  const std::size_t tried = std::min(kMostTried, vertices.size());
+  const std::size_t tried = std::min(kMaxTried, vertices.size());
   const auto end = vertices.begin() + static_cast<std::ptrdiff_t>(tried);
   std::partial_sort(vertices.begin(), end, vertices.end(),
                     [&](std::uint32_t a, std::uint32_t b) {
-                      const double of_a = distance2(frames.at(0, a), centre.data());
-                      const double of_b = distance2(frames.at(0, b), centre.data());
-                      return of_a != of_b ? of_a < of_b : a < b;
+                      const double distance_a = distance2(frames.at(0, a), centre.data());
+                      const double distance_b = distance2(frames.at(0, b), centre.data());
+                      return distance_a != distance_b ? distance_a < distance_b : a < b;
                     });
   vertices.resize(tried);
   return vertices;
@@ -54,9 +54,9 @@ std::optional<Seed> PartitionClusters::seed_of(const std::vector<std::uint32_t>&
       if (best && i % kCentral == 0) break;  // vertices farther from the centre are not needed
       const auto seed = choice_.triangle_at(central[i], suits);
       if (!seed) continue;
-      const double of_seed = choice_.quality(*seed, quality);
-      if (of_seed <= quality) continue;
-      quality = of_seed;
+      const double seed_quality = choice_.quality(*seed, quality);
+      if (seed_quality <= quality) continue;
+      quality = seed_quality;
       best = seed;
     }
     if (best) return best;

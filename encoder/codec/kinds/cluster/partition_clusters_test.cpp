@@ -25,20 +25,20 @@ struct Sheets {
 // line.
 Sheets sheets(std::uint32_t count, bool some_are_lines) {
   Sheets scene;
-  constexpr std::uint32_t kOfSheet = kColumns * kColumns;
-  scene.frames = {count * kOfSheet, 4, {}};
+  constexpr std::uint32_t kSheetVertices = kColumns * kColumns;
+  scene.frames = {count * kSheetVertices, 4, {}};
   for (std::uint32_t f = 0; f < 4; ++f) {
-    for (std::uint32_t v = 0; v < count * kOfSheet; ++v) {
-      const std::uint32_t sheet = v / kOfSheet;
-      const std::uint32_t row = v % kOfSheet / kColumns;
+    for (std::uint32_t v = 0; v < count * kSheetVertices; ++v) {
+      const std::uint32_t sheet = v / kSheetVertices;
+      const std::uint32_t row = v % kSheetVertices / kColumns;
       const double x = 10.0 * (v % kColumns);
       const double y = some_are_lines && sheet % 2 == 1 ? 0.0 : 10.0 * row;
       scene.frames.xyz.insert(scene.frames.xyz.end(),
                               {x + 1000.0 * sheet, y + 37.0 * (2 * sheet % 3) * f, 11.0 * f});
     }
   }
-  for (std::uint32_t v = 0; v < count * kOfSheet; ++v) {
-    if (v % kColumns == 0 || v % kOfSheet < kColumns) continue;
+  for (std::uint32_t v = 0; v < count * kSheetVertices; ++v) {
+    if (v % kColumns == 0 || v % kSheetVertices < kColumns) continue;
     scene.triangles.push_back({v - kColumns - 1, v - kColumns, v});
     scene.triangles.push_back({v - kColumns - 1, v, v - 1});
   }

@@ -34,13 +34,13 @@ std::vector<Choice> all_choices(const std::vector<RdCurve>& curves) {
 }
 
 // Returns the lowest distortion of all choices within a rate.
-double least_distortion(const std::vector<RdCurve>& curves, double rate) {
-  double least = std::numeric_limits<double>::infinity();
+double min_distortion(const std::vector<RdCurve>& curves, double rate) {
+  double min = std::numeric_limits<double>::infinity();
   for (const Choice& choice : all_choices(curves)) {
     const RdPoint sum = total(curves, choice);
-    if (sum.rate <= rate) least = std::min(least, sum.distortion);
+    if (sum.rate <= rate) min = std::min(min, sum.distortion);
   }
-  return least;
+  return min;
 }
 
 // Returns convex curves, in which each step saves less than the one before, with integer
@@ -68,7 +68,7 @@ TEST(AllocateWithin, IsOptimalForConvexCurvesInVectors) {
     for (int budget = 0; budget <= 15; ++budget) {
       const RdPoint sum = total(curves, allocate_within(curves, budget));
       EXPECT_LE(sum.rate, budget);
-      EXPECT_EQ(sum.distortion, least_distortion(curves, budget));
+      EXPECT_EQ(sum.distortion, min_distortion(curves, budget));
     }
   }
 }
@@ -97,7 +97,7 @@ TEST(AllocateWithin, IsOptimalAtTheRateOfASlope) {
       const double budget = total(curves, by_slope).rate;
       const RdPoint sum = total(curves, allocate_within(curves, budget));
       EXPECT_EQ(sum.rate, budget);
-      EXPECT_EQ(sum.distortion, least_distortion(curves, budget));
+      EXPECT_EQ(sum.distortion, min_distortion(curves, budget));
     }
   }
 }
@@ -136,10 +136,10 @@ TEST(AllocateBySlope, MinimisesTheLagrangianCost) {
     std::mt19937 random(seed);
     for (const RdCurve& curve : random_curves(random, seed % 3 == 0, seed % 2 == 0)) {
       for (const double lambda : {0.0625, 1.5, 7.25, 30.5, 111.25, 800.5}) {
-        double least = std::numeric_limits<double>::infinity();
-        for (const RdPoint& p : curve) least = std::min(least, p.distortion + lambda * p.rate);
+        double min = std::numeric_limits<double>::infinity();
+        for (const RdPoint& p : curve) min = std::min(min, p.distortion + lambda * p.rate);
         const RdPoint& chosen = curve[allocate_by_slope(curve, lambda)];
-        EXPECT_NEAR(chosen.distortion + lambda * chosen.rate, least, 1e-9);
+        EXPECT_NEAR(chosen.distortion + lambda * chosen.rate, min, 1e-9);
       }
     }
   }

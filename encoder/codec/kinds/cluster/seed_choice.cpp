@@ -77,9 +77,9 @@ std::optional<Seed> SeedChoice::triangle_at(std::uint32_t v, const Suits& suits)
   Triangle best{};
   for (const Triangle& t : triangles_at(v)) {
     if (suits && !suits(t)) continue;
-    const double of_triangle = quality(t);
-    if (of_triangle > best_quality) {
-      best_quality = of_triangle;
+    const double triangle_quality = quality(t);
+    if (triangle_quality > best_quality) {
+      best_quality = triangle_quality;
       best = t;
     }
     if (rules_.first && best_quality > 0.0) return best;
@@ -144,9 +144,9 @@ Seed SeedChoice::spread(const Seed& seed, std::vector<std::uint32_t> vertices,
   found[1] = farthest_from(found[0]);
   double best = 0.0;
   for (const std::uint32_t v : vertices) {
-    const double of_triangle = quality({found[0], found[1], v}, best);
-    if (of_triangle <= best) continue;
-    best = of_triangle;
+    const double triangle_quality = quality({found[0], found[1], v}, best);
+    if (triangle_quality <= best) continue;
+    best = triangle_quality;
     found[2] = v;
   }
   return best > 0.0 ? found : seed;

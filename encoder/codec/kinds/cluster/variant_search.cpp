@@ -80,21 +80,21 @@ bool has_variants(const EncoderSettings& settings) {
 FoundVariant search_variants(const ClusterGofCoding& coding, double step,
                              std::span<const ClusterChoice> choices) {
   std::vector<Trial> trials;
-  double most = std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
   double worth = 0.0;  // squared error per bit
   for (std::size_t i = 0; i < choices.size(); ++i) {
     for (const BaselineTools& tools : variants_of(coding.settings().baseline)) {
       EncoderSettings settings = coding.settings();
       settings.baseline = tools;
       trials.push_back(encode_with(coding, settings, step, choices[i]));
-      if (i == 0 && is_literal(tools)) most = trials.back().error;
+      if (i == 0 && is_literal(tools)) max = trials.back().error;
       if (trials.size() > 1) continue;
       worth = worth_of_bit(coding, settings, step, choices[i], trials.back());
     }
   }
   const auto cost = [&](const Trial& trial) {
-    return trial.error > most ? std::numeric_limits<double>::infinity()
-                              : trial.error + worth * trial.bits;
+    return trial.error > max ? std::numeric_limits<double>::infinity()
+                             : trial.error + worth * trial.bits;
   };
   const auto best =
       std::min_element(trials.begin(), trials.end(),

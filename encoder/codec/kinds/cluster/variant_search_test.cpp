@@ -89,7 +89,7 @@ TEST(SearchVariants, FindsOneThatNoOtherBeatsInErrorAndBitsNorTheLiteralOneInErr
     const ClusterGofCoding coding(mesh, settings, sheet.frames);
     const std::array<ClusterChoice, 1> choices{{{settings.baseline.clusters, false}}};
     const FoundVariant found = search_variants(coding, kStep, choices);
-    const Cost least = cost_of(coding, found.clustering);
+    const Cost min = cost_of(coding, found.clustering);
     int same = 0;
     std::vector<Clustering> different;
     for (const SeedMode seeds : {SeedMode::kTriangle, SeedMode::kFirst, SeedMode::kSpread}) {
@@ -107,10 +107,10 @@ TEST(SearchVariants, FindsOneThatNoOtherBeatsInErrorAndBitsNorTheLiteralOneInErr
           different.push_back(clustering);
         }
         const Cost cost = cost_of(variant, clustering);
-        EXPECT_FALSE(cost.error < least.error && cost.bits < least.bits);
+        EXPECT_FALSE(cost.error < min.error && cost.bits < min.bits);
         const bool is_literal = seeds == SeedMode::kFirst && motion == MotionMeasure::kPlain;
         if (is_literal) {
-          EXPECT_LE(least.error, cost.error);
+          EXPECT_LE(min.error, cost.error);
         }
       }
     }

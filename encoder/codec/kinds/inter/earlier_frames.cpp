@@ -15,8 +15,8 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kSample = 256;           // fixed: time; coordinates
-constexpr std::uint32_t kMostSearched = 1024;  // fixed: time; places
+constexpr std::size_t kSample = 256;          // fixed: time; coordinates
+constexpr std::uint32_t kMaxSearched = 1024;  // fixed: time; places
 
 // Returns FNV-1a of the coordinates on the grid.
 std::uint64_t hash_on_grid(std::span<const double> xyz) {
@@ -96,13 +96,13 @@ class EarlierSearch {
     const auto xyz = sample(own.frame);
     const std::vector<double> reference =
         reference_of(own, sample(own.first), sample(own.second));
-    double least = squared_distance(xyz, reference);
+    double min = squared_distance(xyz, reference);
     std::uint32_t distance = 0;
-    for (std::uint32_t d = 1; d <= std::min({place, max_distance_, kMostSearched}); ++d) {
+    for (std::uint32_t d = 1; d <= std::min({place, max_distance_, kMaxSearched}); ++d) {
       if (!may_refer(place, place - d)) continue;
       const double other = squared_distance(xyz, sample(order_[place - d].frame));
-      if (other >= least) continue;
-      least = other;
+      if (other >= min) continue;
+      min = other;
       distance = d;
     }
     return distance;
@@ -133,13 +133,13 @@ bool are_equal_on_grid(std::span<const double> xyz, std::span<const double> othe
 
 std::vector<double> reference_of(const FramePlace& place, std::span<const double> first,
                                  std::span<const double> second) {
-  const double of_second =
+  const double second_weight =
       place.first == place.second
           ? 0.0
           : static_cast<double>(place.frame - place.first) / (place.second - place.first);
   std::vector<double> reference(first.size());
   for (std::size_t i = 0; i < first.size(); ++i) {
-    reference[i] = first[i] + of_second * (second[i] - first[i]);
+    reference[i] = first[i] + second_weight * (second[i] - first[i]);
   }
   return reference;
 }

@@ -114,7 +114,7 @@ class InterGofKind : public KindEncoder {
   std::unique_ptr<SpanCoder> make_coder(const SpanFrames& frames) const override {
     if (frames.num_gofs > 1) {
       return std::make_unique<SplitCoder>(
-          frames, [this](const SpanFrames& of_gof) { return make_coder(of_gof); });
+          frames, [this](const SpanFrames& gof_frames) { return make_coder(gof_frames); });
     }
     return std::make_unique<InterSpanCoder>(mesh_, meshes_[Prediction::kLayers], settings_,
                                             frames);

@@ -49,9 +49,9 @@ InterSettings choose_frame_settings(const SequenceHeader& header,
   step /= mean_step(s.pattern);
   s.exact_flag = settings.target.kind == Target::kLossless;
   s.step.assign(s.pattern.num_depths(), kExactInterStep);
-  for (std::uint32_t& of_depth : s.step) {
+  for (std::uint32_t& depth_step : s.step) {
     if (s.exact_flag) break;
-    of_depth = static_cast<std::uint32_t>(
+    depth_step = static_cast<std::uint32_t>(
         std::clamp(std::floor(step * kExactInterStep + 0.5), 1.0, double{kMaxInterStep}));
     step *= kStepOfDepth;
   }
@@ -73,9 +73,9 @@ InterSettings choose_frame_settings(const SequenceHeader& header,
 PatchOfVertex divide_into_patches(const SequenceHeader& header, const EncoderSettings& settings,
                                   const SpanFrames& frames, std::span<const Triangle> triangles,
                                   std::uint32_t count) {
-  const std::uint32_t most = std::min(count, header.level().max_clusters);
-  if (most == 0) return {};
-  return partition_vertices(settings.inter.partition, frames, triangles, most);
+  const std::uint32_t max = std::min(count, header.level().max_clusters);
+  if (max == 0) return {};
+  return partition_vertices(settings.inter.partition, frames, triangles, max);
 }
 
 void set_patches(InterSettings& settings, const PatchOfVertex& patch_of_vertex) {

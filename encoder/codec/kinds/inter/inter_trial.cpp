@@ -33,10 +33,10 @@ DecodeFrame decode_cut(const OrderedMesh& mesh, const InterSettings& s,
 std::vector<EarlierFrame> earlier_of(const SequenceHeader& header, const SpanFrames& frames,
                                      const FramePattern& pattern) {
   const std::size_t values = 3 * std::size_t{frames.num_vertices};
-  const std::uint64_t most = header.level().max_gof_factors / values;
+  const std::uint64_t max = header.level().max_gof_factors / values;
   return earlier_frames(
       pattern, frames.xyz, values,
-      static_cast<std::uint32_t>(std::min<std::uint64_t>(most, frames.num_frames)));
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(max, frames.num_frames)));
 }
 
 InterSettings with_distance(InterSettings settings, const std::vector<EarlierFrame>& earlier) {
@@ -144,8 +144,8 @@ EncodedSpan InterTrial::finish() {
   encoded_.frame = decoded_.decoder();
   if (coded_) {
     encoded_.cut = [mesh = &mesh_, s = settings_, coded = coded_,
-                    bits = header_.position_bits](int most) {
-      return decode_cut(*mesh, s, *coded, bits, static_cast<std::uint32_t>(most));
+                    bits = header_.position_bits](int max) {
+      return decode_cut(*mesh, s, *coded, bits, static_cast<std::uint32_t>(max));
     };
   }
   return std::move(encoded_);

@@ -75,14 +75,15 @@ PatchSearch::PatchSearch(const OrderedMesh& mesh, const InterSettings& settings,
                          bool to_nearest)
     : mesh_(mesh),
       settings_(settings),
-      most_alone_(settings.exact_flag ? 0.0
-                  : to_nearest        ? 0.5
-                                      : std::numeric_limits<double>::infinity()),
+      max_alone_(settings.exact_flag ? 0.0
+                 : to_nearest        ? 0.5
+                                     : std::numeric_limits<double>::infinity()),
       vertices_(settings.num_patches),
       wanted_(3 * std::size_t{mesh.num_vertices()}),
       left_(wanted_.size()),
-      of_neighbours_(mesh, settings.layer_group_size.size(), settings.pattern.num_depths()),
-      of_motions_(mesh, settings.layer_group_size.size(), settings.pattern.num_depths()) {
+      neighbour_contexts_(mesh, settings.layer_group_size.size(),
+                          settings.pattern.num_depths()),
+      motion_contexts_(mesh, settings.layer_group_size.size(), settings.pattern.num_depths()) {
   for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
     vertices_[settings.patch_of_vertex[v]].push_back(v);
   }
@@ -101,13 +102,13 @@ FramePatches PatchSearch::choose(std::span<const double> xyz, std::uint32_t dept
       patches[p] = cheapest_motion(p, xyz, depth, recon, own);
     }
   });
-  std::array<Costs, 2> of_residuals;
-  for_each(of_residuals.size(), [&](std::size_t i) {
-    InterContexts& of_mode = i == 0 ? of_neighbours_ : of_motions_;
-    of_mode.start_frame(recon.place(), depth);
-    of_residuals[i] = costs(of_mode, i == 0 ? wanted_ : left_);
+  std::array<Costs, 2> residual_costs;
+  for_each(residual_costs.size(), [&](std::size_t i) {
+    InterContexts& mode_contexts = i == 0 ? neighbour_contexts_ : motion_contexts_;
+    mode_contexts.start_frame(recon.place(), depth);
+    residual_costs[i] = costs(mode_contexts, i == 0 ? wanted_ : left_);
   });
-  choose_modes(of_residuals[0], of_residuals[1], contexts, patches);
+  choose_modes(residual_costs[0], residual_costs[1], contexts, patches);
   return patches;
 }
 
@@ -120,12 +121,12 @@ PatchMotion PatchSearch::cheapest_motion(std::size_t patch, std::span<const doub
   PatchMotion offset = all;
   std::fill(offset.residual.begin() + kOffsetValues, offset.residual.end(), 0);
   PatchMotion cheapest;
-  double least = std::numeric_limits<double>::max();
+  double min = std::numeric_limits<double>::max();
   for (const PatchMotion& candidate : {all, offset, PatchMotion{}}) {
     const double cost = error(patch, xyz, depth, recon, candidate, nullptr) / kLambda +
                         motion_bits(contexts, candidate);
-    if (cost >= least) continue;
-    least = cost;
+    if (cost >= min) continue;
+    min = cost;
     cheapest = candidate;
   }
   error(patch, xyz, depth, recon, cheapest, &left_);
@@ -134,15 +135,15 @@ PatchMotion PatchSearch::cheapest_motion(std::size_t patch, std::span<const doub
 
 // Chooses the modes of patches. patches: has their motions; those that are not used are
 // removed.
-void PatchSearch::choose_modes(const Costs& of_neighbours, const Costs& of_motion,
+void PatchSearch::choose_modes(const Costs& neighbour_costs, const Costs& motion_costs,
                                PatchContexts contexts, FramePatches& patches) const {
   for (std::size_t p = 0; p < patches.size(); ++p) {
     contexts.start(p);
-    std::array<double, kPatchModes> cost{of_neighbours[p], of_motion[p], cost_alone(p)};
+    std::array<double, kPatchModes> cost{neighbour_costs[p], motion_costs[p], cost_alone(p)};
     const double bits = motion_bits(contexts, patches[p]);
     for (int mode = 0; mode < kPatchModes; ++mode) {
-      double& of_mode = cost[static_cast<std::size_t>(mode)];
-      of_mode += mode_bits(contexts, mode) + (mode > 0 ? bits : 0.0);
+      double& mode_cost = cost[static_cast<std::size_t>(mode)];
+      mode_cost += mode_bits(contexts, mode) + (mode > 0 ? bits : 0.0);
     }
     const auto cheapest = std::min_element(cost.begin(), cost.end()) - cost.begin();
     patches[p].mode = static_cast<PatchMode>(cheapest);
@@ -157,7 +158,7 @@ double PatchSearch::cost_alone(std::size_t patch) const {
   for (const std::uint32_t v : vertices_[patch]) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double left = left_[3 * std::size_t{v} + c];
-      if (std::abs(left) > most_alone_) return std::numeric_limits<double>::max();
+      if (std::abs(left) > max_alone_) return std::numeric_limits<double>::max();
       error += left * left;
     }
   }
@@ -176,14 +177,15 @@ PatchSearch::Costs PatchSearch::costs(InterContexts& contexts,
       BitCost bits;
       double error = 0.0;
       for (std::size_t c = 0; c < 3; ++c) {
-        const double of_axis = wanted[3 * std::size_t{v} + c];
+        const double wanted_value = wanted[3 * std::size_t{v} + c];
         const std::int32_t residual =
             settings_.exact_flag
-                ? rounded_residual(of_axis, 0.5)
-                : cheaper_residual(contexts.models(), contexts.expected(), of_axis);
+                ? rounded_residual(wanted_value, 0.5)
+                : cheaper_residual(contexts.models(), contexts.expected(), wanted_value);
         write_residual(bits, contexts.models(), contexts.expected(), residual);
         contexts.update(residual);
-        if (!settings_.exact_flag) error += (of_axis - residual) * (of_axis - residual);
+        if (!settings_.exact_flag)
+          error += (wanted_value - residual) * (wanted_value - residual);
       }
       costs[settings_.patch_of_vertex[v]] += bits.bits() + error / kLambda;
     }
@@ -279,9 +281,9 @@ double PatchSearch::error(std::size_t patch, std::span<const double> xyz, std::u
         value = on_grid(xyz[own]) * kPointUnits;
         at = to_grid(at);
       }
-      const double of_axis = (value - static_cast<double>(at)) / step_of(recon, v);
-      if (left != nullptr) (*left)[own] = of_axis;
-      sum += of_axis * of_axis;
+      const double wanted_value = (value - static_cast<double>(at)) / step_of(recon, v);
+      if (left != nullptr) (*left)[own] = wanted_value;
+      sum += wanted_value * wanted_value;
     }
   }
   return sum;

@@ -34,8 +34,8 @@ class PatchSearch {
   PatchMotion cheapest_motion(std::size_t patch, std::span<const double> xyz,
                               std::uint32_t depth, const InterRecon& recon,
                               PatchContexts& contexts);
-  void choose_modes(const Costs& of_neighbours, const Costs& of_motion, PatchContexts contexts,
-                    FramePatches& patches) const;
+  void choose_modes(const Costs& neighbour_costs, const Costs& motion_costs,
+                    PatchContexts contexts, FramePatches& patches) const;
   double cost_alone(std::size_t patch) const;
   PatchMotion fit(std::size_t patch, std::span<const double> xyz, std::uint32_t depth,
                   const InterRecon& recon) const;
@@ -46,15 +46,15 @@ class PatchSearch {
 
   const OrderedMesh& mesh_;
   const InterSettings& settings_;
-  double most_alone_;  // error of a coordinate of a patch without residuals, in steps
+  double max_alone_;  // error of a coordinate of a patch without residuals, in steps
   std::vector<std::vector<std::uint32_t>> vertices_;  // [patch]
   // [num_vertices][3]: residuals in steps, from neighbours and from motions.
   std::vector<double> wanted_;
   std::vector<double> left_;
   // Contexts as if all vertices were predicted in one way in all frames: the cost of a mode in
   // a patch does not depend on the mode that was chosen for it.
-  InterContexts of_neighbours_;
-  InterContexts of_motions_;
+  InterContexts neighbour_contexts_;
+  InterContexts motion_contexts_;
 };
 
 }  // namespace rlpc

@@ -19,8 +19,8 @@ class SkinnedGofKind : public KindEncoder {
   }
 
   std::optional<EncodedSpan> encode_with(const KeptRig& rig, const SpanFrames& frames,
-                                         double step, double most) const override {
-    return encode_with_rig(context_, rig, frames, step, most);
+                                         double step, double max_cost) const override {
+    return encode_with_rig(context_, rig, frames, step, max_cost);
   }
 
   // Never called: if there are several kinds, this one comes first and is always encoded.

@@ -123,9 +123,9 @@ void SkinnedSpanCoder::analyse(double analysis_step) {
 std::optional<double> SkinnedSpanCoder::expected_error(double step) const {
   // tuned (off: 1): Squared error of an encoding relative to that of its draft, whose residuals
   // of tracks are chosen one by one.
-  constexpr double kOfDraft = 0.92;
+  constexpr double kDraftError = 0.92;
   if (draft_ && analysis_.last() == nullptr) {
-    return (draft_->is_encoded ? kOfDraft : 1.0) * error_at(step, *draft_);
+    return (draft_->is_encoded ? kDraftError : 1.0) * error_at(step, *draft_);
   }
   if (!choice_ || follows_step() || analysis_.last() == nullptr) return std::nullopt;
   return expected_squared_error(*analysis_.last(), step);

@@ -147,17 +147,17 @@ TEST(SkinnedSpanCoder, EstimatesTheErrorWithOneBone) {
   SkinnedSpanCoder coder(context, a.frames);
   EXPECT_FALSE(coder.expected_error(10.0));
   coder.analyse(10.0);
-  double least = 1e9;
-  double most = 0.0;
+  double min = 1e9;
+  double max = 0.0;
   for (const double step : {10.0, 13.0, 16.0, 20.0}) {
     const double real = squared_error(a.frames, coder.encode(step, 10.0).frame);
     const double factor = std::sqrt(real / coder.expected_error(step).value());
-    least = std::min(least, factor);
-    most = std::max(most, factor);
+    min = std::min(min, factor);
+    max = std::max(max, factor);
   }
-  EXPECT_GT(least, 0.6);
-  EXPECT_LT(most, 1.6);
-  EXPECT_LT(most, 1.2 * least);
+  EXPECT_GT(min, 0.6);
+  EXPECT_LT(max, 1.6);
+  EXPECT_LT(max, 1.2 * min);
 }
 
 // The estimate comes from a draft, and so ends with the first encoding.

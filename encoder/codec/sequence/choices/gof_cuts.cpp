@@ -17,21 +17,21 @@ namespace rlpc {
 namespace {
 
 constexpr std::uint64_t kMaxSampleValues = std::uint64_t{1} << 21;  // fixed: memory
-constexpr std::uint32_t kLeastVertices = 8;                         // fixed: fewer say nothing
-constexpr std::uint32_t kMostFrames = kMaxSampleValues / 3 / kLeastVertices;  // fixed: memory
+constexpr std::uint32_t kMinVertices = 8;                           // fixed: fewer say nothing
+constexpr std::uint32_t kMaxCutFrames = kMaxSampleValues / 3 / kMinVertices;  // fixed: memory
 // tuned (off: 1): GOFs of unequal length are used only if their expected cost is lower by this
 // fraction. The estimate leaves out bones, which gain from long GOFs, so small differences mean
 // nothing.
-constexpr double kLeastGain = 0.03;
+constexpr double kMinGain = 0.03;
 
 // Estimates the cost of GOFs from a sample of the vertices.
 class GofCosts {
  public:
   GofCosts(std::uint32_t num_vertices, std::uint32_t num_frames, double step)
       : num_vertices_(num_vertices), step_(step) {
-    const auto most =
+    const auto max =
         static_cast<std::uint32_t>(kMaxSampleValues / (3 * std::uint64_t{num_frames}));
-    const std::uint32_t count = std::min({num_vertices, kProbeVertices, most});
+    const std::uint32_t count = std::min({num_vertices, kProbeVertices, max});
     for (std::uint32_t i = 0; i < count; ++i) {
       vertices_.push_back(static_cast<std::uint32_t>(std::uint64_t{i} * num_vertices / count));
     }
@@ -63,7 +63,7 @@ class GofCosts {
   }
   // Returns the same for equal GOFs of at most `longest` frames, from every eighth frame, so
   // that lengths can be compared.
-  double of_equal(std::uint32_t num_frames, std::uint32_t longest) const {
+  double equal_cost(std::uint32_t num_frames, std::uint32_t longest) const {
     constexpr std::uint32_t kEvery = 8;  // fixed: 16 of 128 frames, as above
     double sum = 0.0;
     for (const FrameRange& span : equal_gofs(num_frames, longest)) {
@@ -75,8 +75,8 @@ class GofCosts {
  private:
   // Returns displacements of the vertices from their mean positions in a sample of frames. The
   // sample includes the first and the last frame, which reveal a slightly misplaced cut.
-  TrajectoryMatrix displacements(const FrameRange& span, std::uint32_t most) const {
-    const std::uint32_t count = std::min(span.count, most);
+  TrajectoryMatrix displacements(const FrameRange& span, std::uint32_t max) const {
+    const std::uint32_t count = std::min(span.count, max);
     TrajectoryMatrix matrix;
     matrix.num_values = vertices_.size();
     matrix.num_frames = 3 * std::size_t{count};
@@ -100,11 +100,11 @@ class GofCosts {
     return matrix;
   }
 
-  double expected(const FrameRange& span, std::uint32_t most) const {
+  double expected(const FrameRange& span, std::uint32_t max) const {
     // tuned (off: 0): Bits of a rest position, which each GOF codes again: about five for each
     // coordinate. Without this cost, GOFs would be cut far too often.
     constexpr double kRestBits = 15.0;
-    const TrajectoryMatrix matrix = displacements(span, most);
+    const TrajectoryMatrix matrix = displacements(span, max);
     const double vertices = num_vertices_;
     const double values = 3.0 * span.count;
     const double scale =
@@ -199,14 +199,14 @@ InputResult<std::vector<FrameRange>> cheapest_gofs(FrameSource& source, std::uin
   const std::uint32_t num_frames = source.num_frames();
   std::vector<FrameRange> equal = equal_gofs(num_frames, longest);
   const std::uint32_t unit = longest / kUnitsOfLongest;
-  if (equal.size() < 2 || unit == 0 || num_frames > kMostFrames) return equal;
+  if (equal.size() < 2 || unit == 0 || num_frames > kMaxCutFrames) return equal;
   GofCosts costs(source.num_vertices(), num_frames, step);
   if (auto error = read_all(source, costs)) return *error;
   std::vector<FrameRange> spans = cheapest_of_units(costs, num_frames, longest, unit);
   for (std::size_t i = 1; i < spans.size(); ++i) {
     refine(costs, longest, unit, spans[i - 1], spans[i]);
   }
-  const bool better = cost(costs, spans) < (1.0 - kLeastGain) * cost(costs, equal);
+  const bool better = cost(costs, spans) < (1.0 - kMinGain) * cost(costs, equal);
   return better ? std::move(spans) : std::move(equal);
 }
 
@@ -217,20 +217,20 @@ InputResult<std::uint32_t> choose_longest_gof(FrameSource& source, std::uint32_t
   constexpr double kWorthLength = 0.05;
   const std::uint32_t num_frames = source.num_frames();
   if (num_frames <= shortest || longest <= shortest) return shortest;
-  if (num_frames > kMostFrames) return longest;
+  if (num_frames > kMaxCutFrames) return longest;
   GofCosts costs(source.num_vertices(), num_frames, step);
   if (auto error = read_all(source, costs)) return *error;
   std::vector<std::uint32_t> lengths{shortest};
   while (lengths.back() < std::min(longest, num_frames)) {
     lengths.push_back(std::min(2 * lengths.back(), longest));
   }
-  std::vector<double> of_length;
+  std::vector<double> length_cost;
   for (const std::uint32_t length : lengths) {
-    of_length.push_back(costs.of_equal(num_frames, length));
+    length_cost.push_back(costs.equal_cost(num_frames, length));
   }
-  const double least = *std::min_element(of_length.begin(), of_length.end());
+  const double min = *std::min_element(length_cost.begin(), length_cost.end());
   std::size_t i = 0;
-  while (of_length[i] > (1.0 + kWorthLength) * least) ++i;
+  while (length_cost[i] > (1.0 + kWorthLength) * min) ++i;
   return lengths[i];
 }
 

@@ -78,9 +78,9 @@ GridChoice choose_grid(const Extent& extent, double finest_error) {
   const double reach = half * kMargin;
   int bits = kDefaultPositionBits;
   if (finest_error > 0.0 && reach > 0.0) {
-    constexpr double kMostSteps = 0x1p40;  // fixed: beyond all grids
+    constexpr double kMaxSteps = 0x1p40;  // fixed: beyond all grids
     const double steps =
-        std::clamp(2.0 * reach * kStepsPerError / finest_error, 1.0, kMostSteps);
+        std::clamp(2.0 * reach * kStepsPerError / finest_error, 1.0, kMaxSteps);
     bits = std::clamp(ceil_exponent(steps), kDefaultPositionBits, kMaxPositionBits);
   }
   int log2_step = kMinGridLog2Step;

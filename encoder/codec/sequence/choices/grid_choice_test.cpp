@@ -163,10 +163,10 @@ TEST(MeasureExtent, IsTheBoxOverAllFramesAndTheSpreadAboutTheirMeans) {
 }
 
 TEST(MeasureExtent, RefusesCoordinatesBeyondTwoToThe100AndNamesFileAndFrame) {
-  const float most = 0x1p100F;
-  Frames fits({{0, 0, 0}, {most, -most, 0}});
+  const float largest = 0x1p100F;
+  Frames fits({{0, 0, 0}, {largest, -largest, 0}});
   EXPECT_TRUE(measure_extent(fits));
-  for (const float x : {std::nextafter(most, 2 * most), -2 * most, 3e38F}) {
+  for (const float x : {std::nextafter(largest, 2 * largest), -2 * largest, 3e38F}) {
     Frames frames({{0, 0, 0}, {1, 2, 3}, {0, x, 0}});
     const auto extent = measure_extent(frames);
     ASSERT_FALSE(extent);

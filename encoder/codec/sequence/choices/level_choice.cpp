@@ -37,17 +37,17 @@ LevelNeeds::LevelNeeds(const EncoderSettings& settings)
       components(settings.components) {}
 
 LevelNeeds LevelNeeds::with_reserve() const {
-  const Level& most = kLevels.back();
+  const Level& top = kLevels.back();
   // A value beyond all levels is kept, so that it is still rejected.
   const auto doubled = [](auto value, auto limit) {
     return std::max(value, std::min<decltype(value)>(2 * value, limit));
   };
   LevelNeeds needs = *this;
-  needs.factors = doubled(factors, most.max_gof_factors);
-  needs.unit_bytes = doubled(unit_bytes, most.max_unit_bytes);
-  needs.adaptive_values = doubled(adaptive_values, most.max_adaptive_values);
-  needs.clusters = doubled(clusters, most.max_clusters);
-  needs.components = doubled(components, most.max_components);
+  needs.factors = doubled(factors, top.max_gof_factors);
+  needs.unit_bytes = doubled(unit_bytes, top.max_unit_bytes);
+  needs.adaptive_values = doubled(adaptive_values, top.max_adaptive_values);
+  needs.clusters = doubled(clusters, top.max_clusters);
+  needs.components = doubled(components, top.max_components);
   return needs;
 }
 

@@ -19,7 +19,7 @@ constexpr AnalysisRange kRange{.finest = 1.0 / 1.2, .made_for = 1.0, .coarsest =
 struct Outcome {
   double best = 0.0;  // measured value of the encoding reported as best
   double best_step = 0.0;
-  double least = std::numeric_limits<double>::infinity();  // least measured value
+  double min = std::numeric_limits<double>::infinity();  // least measured value
   int trials = 0;
   bool met = false;
 };
@@ -37,7 +37,7 @@ Outcome search(const Target& target, const std::function<double(double)>& measur
     EXPECT_GE(step, 0.5);
     EXPECT_LE(step, 0x1p24);
     const double measured = measure(step);
-    outcome.least = std::min(outcome.least, measured);
+    outcome.min = std::min(outcome.min, measured);
     ++outcome.trials;
     if (s.report(measured, bytes_with(step))) {
       outcome.best = measured;
@@ -272,7 +272,7 @@ TEST(TargetSearch, EndsWithTheSmallestErrorIfTheTargetIsUnreachable) {
     EXPECT_LT(outcome.trials, kEnough);
     EXPECT_FALSE(outcome.met);
     EXPECT_EQ(outcome.best, floor);
-    EXPECT_EQ(outcome.best, outcome.least);
+    EXPECT_EQ(outcome.best, outcome.min);
   }
 }
 
@@ -281,7 +281,7 @@ TEST(TargetSearch, EndsWithTheSmallestRateIfTheTargetIsUnreachable) {
       search({Target::kBpvf, 0.1}, [](double step) { return 0.5 + 1.0 / step; });
   EXPECT_LT(outcome.trials, kEnough);
   EXPECT_FALSE(outcome.met);
-  EXPECT_EQ(outcome.best, outcome.least);
+  EXPECT_EQ(outcome.best, outcome.min);
 }
 
 TEST(TargetSearch, MeetsTheTargetIfTheErrorIsAlwaysZero) {

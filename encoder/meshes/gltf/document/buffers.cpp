@@ -147,9 +147,9 @@ std::optional<GltfBuffers::Place> GltfBuffers::find_file(const std::string& plac
                                                          const std::string& uri) {
   const fs::path relative(percent_decoded(uri));
   const std::size_t colon = uri.find(':');
-  const fs::path of_document = fs::path(file_.file.path()).parent_path();
+  const fs::path document_folder = fs::path(file_.file.path()).parent_path();
   // Use the folder, so that the path is never "-", which is standard input.
-  const fs::path folder = of_document.empty() ? fs::path(".") : of_document;
+  const fs::path folder = document_folder.empty() ? fs::path(".") : document_folder;
   if (!stays_inside(relative) || (colon != uri.npos && colon < uri.find('/')) ||
       !is_below(folder / relative, folder)) {
     errors_.expected(place, gltf_quoted(uri),

@@ -37,13 +37,14 @@ InputResult<GlbChunks> find_chunks(InputFile& file) {
 // or colon; the size per value includes the spare capacity of arrays and maps. The largest
 // structure for an object is a node.
 std::uint64_t bytes_of_document(std::string_view text) {
-  constexpr std::uint64_t kOfValue = 112;
-  constexpr std::uint64_t kOfObject = 1200;
-  constexpr std::uint64_t kOfCharacter = 3;  // in the text, in the JSON, and in names or data
-  std::uint64_t bytes = kOfCharacter * text.size();
+  constexpr std::uint64_t kValueBytes = 112;
+  constexpr std::uint64_t kObjectBytes = 1200;
+  constexpr std::uint64_t kCharacterBytes =
+      3;  // in the text, in the JSON, and in names or data
+  std::uint64_t bytes = kCharacterBytes * text.size();
   for (const char c : text) {
-    if (c == '[' || c == ',' || c == ':') bytes += kOfValue;
-    if (c == '{') bytes += kOfObject;
+    if (c == '[' || c == ',' || c == ':') bytes += kValueBytes;
+    if (c == '{') bytes += kObjectBytes;
   }
   return bytes;
 }

@@ -17,9 +17,9 @@ namespace {
 // Bits of one influence: its weight, and the flag that it is present.
 constexpr double kInfluenceBits = 7.0;  // fixed: the usual weight_bits, and one
 
-// Returns at most `most` evenly spaced frames, including the first and the last.
-std::vector<std::uint32_t> sample_frames(std::uint32_t num_frames, std::uint32_t most) {
-  const std::uint32_t count = std::min(num_frames, most);
+// Returns at most `max` evenly spaced frames, including the first and the last.
+std::vector<std::uint32_t> sample_frames(std::uint32_t num_frames, std::uint32_t max) {
+  const std::uint32_t count = std::min(num_frames, max);
   std::vector<std::uint32_t> chosen;
   for (std::uint32_t i = 0; i < count; ++i) {
     chosen.push_back(count == 1 ? 0
@@ -265,7 +265,7 @@ BoneMotions BoneFit::fit_frames(const BoneMotions& motions, const SkinMoments& m
     std::vector<Motion> now(n);
     std::size_t nearest = 0;
     for (std::size_t f = first; f < end; ++f) {
-      const std::vector<Motion> wanted = targets.of_frame(f - first);
+      const std::vector<Motion> wanted = targets.frame_motions(f - first);
       bool starts = f == first;
       while (nearest + 1 < chosen_.size() && chosen_[nearest + 1] <= f) {
         ++nearest;

@@ -51,7 +51,7 @@ void PoseTargets::add(const Vec3d& rest, std::span<const RigWeight> weights,
   }
 }
 
-std::vector<Motion> PoseTargets::of_frame(std::size_t frame) const {
+std::vector<Motion> PoseTargets::frame_motions(std::size_t frame) const {
   std::vector<Motion> result(num_bones_);
   const double* sum = &sum_[3 * frame];
   for (Motion& m : result) {
@@ -133,14 +133,14 @@ class StepEquations {
 
   // Solves by conjugate gradients, preconditioned with the inverses of the diagonal blocks.
   std::vector<Twist> solve(std::vector<Twist> left) const {
-    constexpr int kMost = 30;            // fixed: steps; usually ten are enough
-    constexpr double kLeastPart = 1e-6;  // fixed: squared; another Gauss-Newton step follows
+    constexpr int kMax = 30;           // fixed: steps; usually ten are enough
+    constexpr double kMinPart = 1e-6;  // fixed: squared; another Gauss-Newton step follows
     std::vector<Twist> x(left.size(), Twist::Zero());
     std::vector<Twist> near = times_inverse(left);
     std::vector<Twist> along = near;
     double size = dot(left, near);
-    const double least = kLeastPart * size;
-    for (int i = 0; i < kMost && size > least; ++i) {
+    const double min = kMinPart * size;
+    for (int i = 0; i < kMax && size > min; ++i) {
       const std::vector<Twist> change = times(along);
       const double curvature = dot(along, change);
       if (!(curvature > 0.0)) break;

@@ -45,7 +45,7 @@ class PoseTargets {
   // trajectory: [frame]
   void add(const Vec3d& rest, std::span<const RigWeight> weights,
            std::span<const Vec3d> trajectory);
-  std::vector<Motion> of_frame(std::size_t frame) const;  // [bone]
+  std::vector<Motion> frame_motions(std::size_t frame) const;  // [bone]
 
  private:
   std::size_t num_bones_;
@@ -54,7 +54,7 @@ class PoseTargets {
 };
 
 // Lowers the squared error of a frame by giving each bone in turn the best motion while the
-// others are fixed. targets: PoseTargets::of_frame().
+// others are fixed. targets: PoseTargets::frame_motions().
 void refine_poses(const SkinMoments& moments, std::span<const Motion> targets,
                   std::vector<Motion>& motions);
 

@@ -55,7 +55,7 @@ struct Skin {
     PoseTargets result(num_bones, 1);
     for (std::size_t v = 0; v < rest.size(); ++v)
       result.add(rest[v], weights[v], {&wanted[v], 1});
-    return result.of_frame(0);
+    return result.frame_motions(0);
   }
   void refine(std::vector<Motion>& motions) const {
     refine_poses(moments(motions.size()), targets(motions.size()), motions);
@@ -137,7 +137,7 @@ TEST(PoseTargets, AreSumsOverVerticesInEachFrame) {
         expected[w.bone] += w.weight * (trajectories[v][f] * p.transpose());
       }
     }
-    EXPECT_EQ(targets.of_frame(f), expected) << f;
+    EXPECT_EQ(targets.frame_motions(f), expected) << f;
   }
 }
 
@@ -170,13 +170,13 @@ TEST(RefinePoses, NeverRaisesTheError) {
       EXPECT_LE(skin.error(motions), before * (1.0 + 1e-12));
     }
     // The motion of the last bone is optimal given the others.
-    const double least = skin.error(motions);
+    const double min = skin.error(motions);
     for (int k = 0; k < 20; ++k) {
       const Motion nudge = random.motion(0.01);
       std::vector<Motion> other = motions;
       other[3].leftCols<3>() = nudge.leftCols<3>() * motions[3].leftCols<3>();
       other[3].col(3) += nudge.col(3);
-      EXPECT_GE(skin.error(other), least * (1.0 - 1e-9));
+      EXPECT_GE(skin.error(other), min * (1.0 - 1e-9));
     }
   }
 }

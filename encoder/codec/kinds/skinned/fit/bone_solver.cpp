@@ -98,11 +98,11 @@ std::size_t BoneSolver::add_bones(std::size_t count, SkinSums& sums) {
   for (std::size_t v = 0; v < error.size(); ++v) error[v] = weights_[v].error;
   std::size_t added = 0;
   for (; added < count; ++added) {
-    auto [best, most] = best_new_bone(error);
-    constexpr double kLeastPart = 1e-9;  // fixed: rounding
+    auto [best, max_error] = best_new_bone(error);
+    constexpr double kMinPart = 1e-9;  // fixed: rounding
     const double sum = std::accumulate(error.begin(), error.end(), 0.0);
     const double negligible = negligible_ * static_cast<double>(error.size());
-    if (most <= std::max(kLeastPart * sum, negligible)) break;
+    if (max_error <= std::max(kMinPart * sum, negligible)) break;
     motions_.push_back(std::move(best));
     sums.add_bone(motions_.back());
     offer_last_bone(sums);
@@ -252,8 +252,8 @@ void BoneSolver::offer_last_bone(const SkinSums& sums) {
       std::size_t place = list.size();
       if (place == SkinSums::kMaxCandidates) {
         place = farthest_candidate(v);
-        const double most = gram_[v][place * SkinSums::kMaxCandidates + place];
-        if (!(sums.rigid_error(v, bone, rest_[v]) < most)) continue;
+        const double max_error = gram_[v][place * SkinSums::kMaxCandidates + place];
+        if (!(sums.rigid_error(v, bone, rest_[v]) < max_error)) continue;
         list[place] = bone;
       } else {
         list.push_back(bone);
@@ -267,16 +267,16 @@ void BoneSolver::offer_last_bone(const SkinSums& sums) {
 std::size_t BoneSolver::farthest_candidate(std::size_t v) const {
   const std::vector<RigWeight>& weights = weights_[v].weights;
   std::size_t farthest = 0;
-  double most = -1.0;
+  double max_error = -1.0;
   for (std::size_t i = 0; i < candidates_[v].size(); ++i) {
     const double error = gram_[v][i * SkinSums::kMaxCandidates + i];
-    if (error <= most) continue;
+    if (error <= max_error) continue;
     const bool followed = std::any_of(weights.begin(), weights.end(), [&](const RigWeight& w) {
       return w.bone == candidates_[v][i];
     });
     if (followed) continue;
     farthest = i;
-    most = error;
+    max_error = error;
   }
   return farthest;
 }
@@ -314,7 +314,7 @@ void BoneSolver::improve_motions() {
     }
     std::vector<Motion> frame(n);
     for (std::size_t f = first; f < end; ++f) {
-      const std::vector<Motion> wanted = targets.of_frame(f - first);
+      const std::vector<Motion> wanted = targets.frame_motions(f - first);
       for (std::size_t b = 0; b < n; ++b) frame[b] = motions_[b][f];
       // Runs twice, as bones that share vertices follow each other.
       refine_poses(moments, wanted, frame);
@@ -345,19 +345,20 @@ double BoneSolver::loss_without(std::size_t v, std::uint32_t bone) const {
 
 // Returns [bone]: the increase of the squared error if the bone is removed.
 std::vector<double> BoneSolver::losses() const {
-  std::vector<std::array<double, kMaxExtraBones>> of_vertex(rest_.size());
+  std::vector<std::array<double, kMaxExtraBones>> vertex_losses(rest_.size());
   for_ranges(rest_.size(), kVerticesTogether, [&](std::size_t first, std::size_t end) {
     for (std::size_t v = first; v < end; ++v) {
       const std::vector<RigWeight>& weights = weights_[v].weights;
       for (std::size_t i = 0; i < weights.size(); ++i) {
-        of_vertex[v][i] = loss_without(v, weights[i].bone);
+        vertex_losses[v][i] = loss_without(v, weights[i].bone);
       }
     }
   });
   std::vector<double> loss(motions_.size(), 0.0);
   for (std::size_t v = 0; v < rest_.size(); ++v) {
     const std::vector<RigWeight>& weights = weights_[v].weights;
-    for (std::size_t i = 0; i < weights.size(); ++i) loss[weights[i].bone] += of_vertex[v][i];
+    for (std::size_t i = 0; i < weights.size(); ++i)
+      loss[weights[i].bone] += vertex_losses[v][i];
   }
   return loss;
 }
@@ -443,10 +444,10 @@ void BoneSolver::remove_worthless_bones(double worth) {
   std::optional<SkinSums> sums;  // made once a bone is removed
   while (motions_.size() > 1) {
     const std::vector<double> loss = losses();
-    const auto least = std::min_element(loss.begin(), loss.end());
-    if (*least >= worth) break;
+    const auto min = std::min_element(loss.begin(), loss.end());
+    if (*min >= worth) break;
     if (!sums) sums.emplace(sample_.positions, motions_);
-    remove_bone(static_cast<std::size_t>(least - loss.begin()), *sums);
+    remove_bone(static_cast<std::size_t>(min - loss.begin()), *sums);
   }
   if (sums) improve(2 * kRounds, *sums);
 }

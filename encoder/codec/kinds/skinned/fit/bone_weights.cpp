@@ -10,12 +10,12 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kMost = kMaxExtraBones;
+constexpr std::size_t kMax = kMaxExtraBones;
 
 struct Blend {
   std::size_t size = 0;
-  std::array<std::size_t, kMost> chosen{};
-  std::array<double, kMost> weight{};
+  std::array<std::size_t, kMax> chosen{};
+  std::array<double, kMax> weight{};
   double error = 0.0;
 
   bool has(std::size_t i) const {
@@ -77,9 +77,9 @@ class SparseBlend {
     for (;;) {
       unconstrained(blend);
       const auto end = blend.weight.begin() + blend.size;
-      const auto least = std::min_element(blend.weight.begin(), end);
-      if (*least > 0.0 || blend.size == 1) break;
-      blend.drop(static_cast<std::size_t>(least - blend.weight.begin()));
+      const auto min = std::min_element(blend.weight.begin(), end);
+      if (*min > 0.0 || blend.size == 1) break;
+      blend.drop(static_cast<std::size_t>(min - blend.weight.begin()));
     }
     double error = 0.0;
     for (std::size_t i = 0; i < blend.size; ++i) {
@@ -98,7 +98,7 @@ class SparseBlend {
   // Minimises w^T gram w subject to sum 1: w is proportional to gram^-1 times a vector of ones.
   void unconstrained(Blend& blend) const {
     const std::size_t n = blend.size;
-    SmallSystem<kMost> m;
+    SmallSystem<kMax> m;
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < n; ++j) m.a[i][j] = at(blend.chosen[i], blend.chosen[j]);
       m.a[i][i] += regular_;
@@ -122,7 +122,7 @@ class SparseBlend {
 
 BoneWeights sparse_weights(std::span<const double> gram, std::size_t stride, std::size_t count,
                            std::size_t max_influences, double error_per_influence) {
-  assert(count > 0 && max_influences > 0 && max_influences <= kMost);
+  assert(count > 0 && max_influences > 0 && max_influences <= kMax);
   const SparseBlend problem(gram, stride, count);
   Blend current = problem.single();
   while (current.size < max_influences) {

@@ -29,8 +29,8 @@ std::vector<double> gram_of(const Deviations& d, std::size_t stride) {
   return gram;
 }
 
-BoneWeights weights_of(const Deviations& d, std::size_t most, double per_influence = 0.0) {
-  return sparse_weights(gram_of(d, d.size() + 2), d.size() + 2, d.size(), most, per_influence);
+BoneWeights weights_of(const Deviations& d, std::size_t max, double per_influence = 0.0) {
+  return sparse_weights(gram_of(d, d.size() + 2), d.size() + 2, d.size(), max, per_influence);
 }
 
 double error_of(const Deviations& d, const std::vector<RigWeight>& weights) {
@@ -53,9 +53,9 @@ std::string text(const BoneWeights& found) {
 
 // Checks that weights are non-negative with sum 1, heaviest first, without duplicates, and that
 // the error is that of the blend.
-void expect_valid(const Deviations& d, const BoneWeights& found, std::size_t most) {
+void expect_valid(const Deviations& d, const BoneWeights& found, std::size_t max) {
   ASSERT_GE(found.weights.size(), 1U);
-  EXPECT_LE(found.weights.size(), most);
+  EXPECT_LE(found.weights.size(), max);
   double sum = 0.0;
   std::vector<std::uint32_t> bones;
   for (const RigWeight& w : found.weights) {
@@ -76,14 +76,14 @@ void expect_valid(const Deviations& d, const BoneWeights& found, std::size_t mos
 
 // Returns the lowest error of blends of these candidates, by enumeration with weights in
 // multiples of 1/steps.
-double least_error(const Deviations& d, const std::vector<std::uint32_t>& bones, int steps) {
-  double least = std::numeric_limits<double>::infinity();
+double min_error(const Deviations& d, const std::vector<std::uint32_t>& bones, int steps) {
+  double min = std::numeric_limits<double>::infinity();
   std::vector<RigWeight> weights;
   const auto search = [&](const auto& self, int left) -> void {
     const std::uint32_t bone = bones[weights.size()];
     if (weights.size() + 1 == bones.size()) {
       weights.push_back({bone, static_cast<double>(left) / steps});
-      least = std::min(least, error_of(d, weights));
+      min = std::min(min, error_of(d, weights));
       weights.pop_back();
       return;
     }
@@ -94,7 +94,7 @@ double least_error(const Deviations& d, const std::vector<std::uint32_t>& bones,
     }
   };
   search(search, steps);
-  return least;
+  return min;
 }
 
 // For orthogonal errors, the optimal weights are inversely proportional to the squared norms.
@@ -163,9 +163,9 @@ TEST(SparseWeights, AreOptimalForTwoBones) {
     }
     const BoneWeights found = weights_of(d, 4);
     expect_valid(d, found, 2);
-    const double least = least_error(d, {0, 1}, 1000);
-    EXPECT_LE(found.error, least + 1e-8);
-    EXPECT_GE(found.error, least - 1e-5);
+    const double min = min_error(d, {0, 1}, 1000);
+    EXPECT_LE(found.error, min + 1e-8);
+    EXPECT_GE(found.error, min - 1e-5);
   }
 }
 
@@ -182,20 +182,20 @@ TEST(SparseWeights, AreOptimalForTheChosenBones) {
       for (double& x : row) x = value() + off;
     }
     double before = std::numeric_limits<double>::infinity();
-    for (std::size_t most = 1; most <= 4; ++most) {
-      const BoneWeights found = weights_of(d, most);
-      expect_valid(d, found, most);
+    for (std::size_t max = 1; max <= 4; ++max) {
+      const BoneWeights found = weights_of(d, max);
+      expect_valid(d, found, max);
       EXPECT_LE(found.error, before);
       before = found.error;
       std::vector<std::uint32_t> bones;
       for (const RigWeight& w : found.weights) bones.push_back(w.bone);
-      const double least = least_error(d, bones, 40);
-      EXPECT_LE(found.error, least + 1e-7) << text(found);
-      if (found.weights.size() == most) continue;
+      const double min = min_error(d, bones, 40);
+      EXPECT_LE(found.error, min + 1e-7) << text(found);
+      if (found.weights.size() == max) continue;
       for (std::uint32_t other = 0; other < d.size(); ++other) {
         if (std::find(bones.begin(), bones.end(), other) != bones.end()) continue;
         bones.push_back(other);
-        EXPECT_GE(least_error(d, bones, 20), found.error * (1.0 - 1e-6)) << text(found);
+        EXPECT_GE(min_error(d, bones, 20), found.error * (1.0 - 1e-6)) << text(found);
         bones.pop_back();
       }
     }

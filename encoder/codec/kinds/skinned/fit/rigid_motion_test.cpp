@@ -205,14 +205,14 @@ TEST(MotionFit, HasTheLeastSquaredError) {
     }
     const Motion best = fit(pairs);
     expect_rotation(best.leftCols<3>());
-    const double least = squared_error(best, pairs);
+    const double min = squared_error(best, pairs);
     for (int k = 0; k < 100; ++k) {
       const double size = k % 2 == 0 ? 0.01 : 1.0;
       Motion other = best;
       other.leftCols<3>() = turn_about(random.point(), size) * best.leftCols<3>();
-      EXPECT_GE(squared_error(other, pairs), least - 1e-12);
+      EXPECT_GE(squared_error(other, pairs), min - 1e-12);
       other.col(3) += size * random.point();
-      EXPECT_GE(squared_error(other, pairs), least - 1e-12);
+      EXPECT_GE(squared_error(other, pairs), min - 1e-12);
     }
   }
 }

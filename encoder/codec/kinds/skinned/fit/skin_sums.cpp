@@ -188,7 +188,7 @@ double SkinSums::rigid_error(std::size_t vertex, std::size_t bone, const Vec3d& 
 Vec3d SkinSums::single_rest(std::size_t vertex) const {
   const auto n = static_cast<double>(num_frames_);
   Vec3d best = Vec3d::Zero();
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (std::size_t b = 0; b < num_bones_; ++b) {
     // Sums over the frames of R^T (x - t), the rest position that fits the frame, and its
     // square.
@@ -197,8 +197,8 @@ Vec3d SkinSums::single_rest(std::size_t vertex) const {
     const Vec3d rest = sums.head<3>() - own.block<3, 1>(0, 3);
     const double square = square_[vertex] - 2.0 * sums(3) + own(3, 3);
     const double error = square - rest.squaredNorm() / n;
-    if (error >= least) continue;
-    least = error;
+    if (error >= min) continue;
+    min = error;
     best = rest / n;
   }
   return best;

@@ -123,8 +123,8 @@ class SkinnedAnalyser {
       // A component of less energy than the error of quantising its factors is not worth a
       // trajectory. Steps that are tried later may be finer.
       const double finest = step_ / (settings_.draft ? kDraftServes : kAnalysisServes);
-      const double least = finest * finest / 12.0 * frames_.num_vertices;
-      found_.pc = components_by_row(displacement(), settings_.max_trajectories, least);
+      const double min = finest * finest / 12.0 * frames_.num_vertices;
+      found_.pc = components_by_row(displacement(), settings_.max_trajectories, min);
       found_.step_of_components = step_;
     }
     found_.spatial_left = find_spatial_left(mesh_, found_.pc);
@@ -165,15 +165,15 @@ class SkinnedAnalyser {
       }
       bone.rotation_flag = from.rotates;
       bone.origin_flag = !from.pinned;
-      constexpr double kLeastMass = 1e-3;  // fixed: above zero
+      constexpr double kMinMass = 1e-3;  // fixed: above zero
       const auto [mass, moment] = mass_and_moment(b);
       // A rotation with quaternion vector part x moves a point by 2 x r, r its distance from
       // the axis.
       const double turn_step =
-          step_ / (2.0 * std::sqrt(std::max(moment * 2.0 / 3.0, kLeastMass)));
+          step_ / (2.0 * std::sqrt(std::max(moment * 2.0 / 3.0, kMinMass)));
       bone.rotation_step_idx = step_idx(turn_step * exact_exp2(kQuaternionFractionBits));
       bone.origin_step_idx =
-          step_idx(step_ / std::sqrt(std::max(mass, kLeastMass)) * kPointScale);
+          step_idx(step_ / std::sqrt(std::max(mass, kMinMass)) * kPointScale);
       std::vector<WantedPose> wanted(frames_.num_frames);
       for (std::size_t f = 0; f < wanted.size(); ++f) {
         wanted[f].rotation = from.poses[f].rotation;
@@ -218,11 +218,11 @@ class SkinnedAnalyser {
       const int layer_step = rig.layer_step[mesh_.layer_of(v)];
       const double unit = static_cast<double>(rig.rest_step) * layer_step / kMaxLayerStep;
       for (std::size_t c = 0; c < 3; ++c) {
-        constexpr double kMost = static_cast<double>(kMaxResidual);  // fixed: format
+        constexpr double kMax = static_cast<double>(kMaxResidual);  // fixed: format
         const double steps =
             (wanted[v][c] * kPointScale - static_cast<double>(predicted[c])) / unit;
         const auto residual =
-            static_cast<std::int32_t>(round_to_int(std::clamp(steps, -kMost, kMost)));
+            static_cast<std::int32_t>(round_to_int(std::clamp(steps, -kMax, kMax)));
         rig.vertex_residual[0][v * kRestFactors + c] = residual;
         values[v * kRestFactors + c] =
             clip_signed(rest_bits(position_bits_),
@@ -239,9 +239,9 @@ class SkinnedAnalyser {
     const double limit = exact_exp2(rest_bits(position_bits_) - 1);
     std::vector<std::int32_t> rounded;
     for (const Point& x : wanted) {
-      for (const double of_axis : x) {
+      for (const double coordinate : x) {
         rounded.push_back(static_cast<std::int32_t>(
-            round_to_int(std::clamp(of_axis * kPointScale, -limit, limit - 1.0))));
+            round_to_int(std::clamp(coordinate * kPointScale, -limit, limit - 1.0))));
       }
     }
     const bool counterparts = settings_.rest == RestTools::kCounterparts && !settings_.draft;

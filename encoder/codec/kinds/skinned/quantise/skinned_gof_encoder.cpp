@@ -36,7 +36,7 @@ bool set_temporal_widths(const std::vector<int>& idx, int fraction_bits,
   for (std::size_t l = 0; l < temporal.size(); ++l) {
     std::size_t first = 0;
     for (std::size_t g = 0; g < gofs.size(); ++g) {
-      Trajectory& t = temporal.of_gof[g][l];
+      Trajectory& t = temporal.gof_trajectories[g][l];
       const auto values = frames_of(gofs[g], temporal.indices[l], first);
       if (!t.trajectory_flag) continue;
       if (!set_scale(idx[l] + 8 * fraction_bits, values, t)) return false;
@@ -55,15 +55,16 @@ std::optional<int> set_scales(const std::vector<std::int32_t>& largest,
   fraction_bits = 0;
   for (std::size_t l = 0; l < idx.size(); ++l) {
     const int spatial_bits = signed_width(largest[l]);
-    for (auto& trajectories : temporal.of_gof) trajectories[l].spatial_bits = spatial_bits;
+    for (auto& trajectories : temporal.gof_trajectories)
+      trajectories[l].spatial_bits = spatial_bits;
     const int shift = spatial_factor_bits(spatial_bits) - spatial_bits;
     idx[l] = temporal.eighths[l] + 8 * (4 - shift);
     fraction_bits = std::max(fraction_bits, (kWantedScaleIdx - idx[l] + 7) / 8);
   }
-  const int most = *std::max_element(idx.begin(), idx.end());
+  const int max = *std::max_element(idx.begin(), idx.end());
   fraction_bits = std::clamp(fraction_bits, 0, kMaxFractionBits);
-  while (fraction_bits > 0 && most + 8 * fraction_bits > kMaxScaleIdx) --fraction_bits;
-  if (given && most + 8 * *given > kMaxScaleIdx) return std::nullopt;
+  while (fraction_bits > 0 && max + 8 * fraction_bits > kMaxScaleIdx) --fraction_bits;
+  if (given && max + 8 * *given > kMaxScaleIdx) return std::nullopt;
   if (given) fraction_bits = *given;
   const int lacking = -(*std::min_element(idx.begin(), idx.end()) + 8 * fraction_bits);
   if (lacking > 0) return lacking;
@@ -133,15 +134,15 @@ CodedTrajectories code_trajectories(const OrderedMesh& mesh, const SkinnedAnalys
     if (*lacking == 0) {
       rig.trajectories.resize(count);
       for (std::size_t l = 0; l < count; ++l) {
-        rig.trajectories[l].spatial_bits = temporal.of_gof[0][l].spatial_bits;
+        rig.trajectories[l].spatial_bits = temporal.gof_trajectories[0][l].spatial_bits;
       }
       for (std::size_t g = 0; g < coded.gofs.size(); ++g) {
-        coded.gofs[g].trajectories = std::move(temporal.of_gof[g]);
+        coded.gofs[g].trajectories = std::move(temporal.gof_trajectories[g]);
       }
       if (settings.draft) coded.values = std::move(spatial.values);
       return {std::move(spatial.residual), std::move(cuts)};
     }
-    limits.least_eighths =
+    limits.min_eighths =
         *std::min_element(temporal.eighths.begin(), temporal.eighths.end()) + *lacking;
   }
 }

@@ -18,8 +18,8 @@ std::vector<std::size_t> component_group_ends(std::size_t num_groups, std::size_
   requested = std::min(requested, count);
   std::vector<std::size_t> ends{count};
   while (ends.size() < num_groups && ends.back() > 1) {
-    const std::size_t least = std::max(requested, ends.size() + 1) - ends.size();
-    ends.push_back(std::max(ends.back() / 3 + 1, least));
+    const std::size_t min = std::max(requested, ends.size() + 1) - ends.size();
+    ends.push_back(std::max(ends.back() / 3 + 1, min));
   }
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   std::reverse(ends.begin(), ends.end());
@@ -32,11 +32,11 @@ void cut_components(std::size_t num_vertices, std::span<const std::size_t> ends,
   std::size_t first = 0;
   for (const std::size_t end : ends) {
     const std::size_t size = end - first;
-    std::vector<std::int32_t> of_group(num_vertices * size);
+    std::vector<std::int32_t> group_factors(num_vertices * size);
     for (std::size_t v = 0; v < num_vertices; ++v) {
-      std::copy_n(&residual[v * count + first], size, &of_group[v * size]);
+      std::copy_n(&residual[v * count + first], size, &group_factors[v * size]);
     }
-    rig.vertex_residual.push_back(std::move(of_group));
+    rig.vertex_residual.push_back(std::move(group_factors));
     rig.group_end.push_back(kRestFactors + end);
     first = end;
   }

@@ -32,18 +32,18 @@ SpanTracks::Coded SpanTracks::code(std::span<const std::array<double, 3>> wanted
                                    double unit) const {
   Coded coded{std::vector<Trajectory>(states_.size()), {}, states_};
   for (std::size_t g = 0; g < states_.size(); ++g) {
-    const auto of_gof = wanted.first(gofs_[g].num_frames);
-    wanted = wanted.subspan(of_gof.size());
+    const auto gof_values = wanted.first(gofs_[g].num_frames);
+    wanted = wanted.subspan(gof_values.size());
     TrackState after = states_[g];
-    TrackCost cost =
-        code_trajectory(of_gof, unit, track_options(settings_), after, coded.of_gof[g]);
+    TrackCost cost = code_trajectory(gof_values, unit, track_options(settings_), after,
+                                     coded.gof_trajectories[g]);
     TrackCost left_out;
-    for (const auto& value : of_gof) {
+    for (const auto& value : gof_values) {
       for (const double x : value) left_out.error += x * x / (unit * unit);
     }
     if (may_drop_ && lagrangian_cost(left_out) < lagrangian_cost(cost)) {
-      coded.of_gof[g] = {};
-      coded.of_gof[g].trajectory_flag = false;
+      coded.gof_trajectories[g] = {};
+      coded.gof_trajectories[g].trajectory_flag = false;
       cost = left_out;
     } else {
       coded.after[g] = std::move(after);
@@ -58,8 +58,9 @@ std::vector<Vec3i> SpanTracks::indices(const Coded& coded) const {
   std::vector<Vec3i> indices;
   indices.reserve(num_frames_);
   for (std::size_t g = 0; g < gofs_.size(); ++g) {
-    if (coded.of_gof[g].trajectory_flag) {
-      const std::vector<Vec3i> part = recon_trajectory(coded.of_gof[g], settings_.track_levels);
+    if (coded.gof_trajectories[g].trajectory_flag) {
+      const std::vector<Vec3i> part =
+          recon_trajectory(coded.gof_trajectories[g], settings_.track_levels);
       indices.insert(indices.end(), part.begin(), part.end());
     } else {
       indices.resize(indices.size() + gofs_[g].num_frames);

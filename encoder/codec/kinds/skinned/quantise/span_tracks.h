@@ -13,7 +13,7 @@
 namespace rlpc {
 
 // Wanted values up to this limit fit their width, however they are rounded.
-inline constexpr double kMostTemporal = 1 << (kTemporalIndexBits - 2);  // fixed: format
+inline constexpr double kMaxTemporal = 1 << (kTemporalIndexBits - 2);  // fixed: format
 
 // Returns 2^(eighths / 8) as the format defines it.
 double power_of_eighths(int eighths);
@@ -25,7 +25,7 @@ class SpanTracks {
 
   // A trajectory in all GOFs.
   struct Coded {
-    std::vector<Trajectory> of_gof;
+    std::vector<Trajectory> gof_trajectories;
     TrackCost cost;
     std::vector<TrackState> after;
   };

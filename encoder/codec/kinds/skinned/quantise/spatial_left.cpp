@@ -13,13 +13,13 @@ namespace {
 void add_differences(const OrderedMesh& mesh, const ComponentsByRow& pc, std::uint32_t v,
                      std::span<float> difference, std::span<float> sum) {
   const std::size_t width = difference.size();
-  const float* of_v = pc.spatial.data() + v * width;
-  std::copy(of_v, of_v + width, difference.begin());
+  const float* factors_v = pc.spatial.data() + v * width;
+  std::copy(factors_v, factors_v + width, difference.begin());
   const std::span<const std::uint32_t> ring = mesh.ring(v);
   const float count = static_cast<float>(ring.size());
   for (const std::uint32_t u : ring) {
-    const float* of_u = pc.spatial.data() + u * width;
-    for (std::size_t l = 0; l < width; ++l) difference[l] -= of_u[l] / count;
+    const float* factors_u = pc.spatial.data() + u * width;
+    for (std::size_t l = 0; l < width; ++l) difference[l] -= factors_u[l] / count;
   }
   for (std::size_t l = 0; l < width; ++l) sum[l] += difference[l] * difference[l];
 }

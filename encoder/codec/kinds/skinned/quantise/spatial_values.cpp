@@ -19,7 +19,7 @@ namespace rlpc {
 namespace {
 
 // Wanted values up to this limit fit their width, however they are rounded.
-constexpr double kMostSpatial =
+constexpr double kMaxSpatial =
     (1 << (kMaxSpatialBits - 1)) - 2.0 * kMaxLayerStep;  // fixed: format
 
 // Spatial factors in grid units: the least-squares fit to the decoded temporal vectors. The
@@ -99,7 +99,7 @@ struct Pass {
   bool keeps_chosen = false;
   std::vector<VertexResidualChoice::Chosen> chosen;  // [vertex][trajectory]
   std::vector<std::int32_t> largest;                 // [trajectory], magnitude of a value
-  double most = 0.0;                                 // magnitude of a wanted value
+  double max = 0.0;                                  // magnitude of a wanted value
 };
 
 class SpatialCoder {
@@ -129,7 +129,7 @@ class SpatialCoder {
       code_layer(mesh_.vertices_of_layers(layer, layer + 1), all);
     }
     result_.largest = std::move(all.largest);
-    result_.excess = all.most / kMostSpatial;
+    result_.excess = all.max / kMaxSpatial;
     return std::move(result_);
   }
 
@@ -137,27 +137,27 @@ class SpatialCoder {
   // Shares passes of a few vertices among threads. Each pass continues from the rates before
   // them, so that few vertices are coded at a time while rates are not settled.
   void code_layer(std::span<const std::uint32_t> list, Pass& all) {
-    constexpr std::size_t kOfPass = 16;  // fixed: vertices
-    constexpr std::size_t kMost = 256;   // fixed: vertices at a time, for as many threads
+    constexpr std::size_t kPassVertices = 16;  // fixed: vertices
+    constexpr std::size_t kMax = 256;          // fixed: vertices at a time, for as many threads
     // tuned (off: 1000000): Vertices at a time are at most one in this many of those that are
     // coded, so that rates are not much older than they would be on one thread.
     constexpr std::size_t kPart = 8;
     std::size_t together = 0;
     for (std::size_t first = 0; first < list.size(); first += together) {
-      together = std::clamp(num_coded_ / kPart, kOfPass, kMost);
+      together = std::clamp(num_coded_ / kPart, kPassVertices, kMax);
       const auto some = list.subspan(first, std::min(together, list.size() - first));
       num_coded_ += some.size();
-      std::vector<Pass> passes((some.size() + kOfPass - 1) / kOfPass);
-      for_ranges(some.size(), kOfPass, [&](std::size_t begin, std::size_t end) {
-        Pass& pass = passes[begin / kOfPass];
-        pass = {all.choice, true, {}, all.largest, all.most};
+      std::vector<Pass> passes((some.size() + kPassVertices - 1) / kPassVertices);
+      for_ranges(some.size(), kPassVertices, [&](std::size_t begin, std::size_t end) {
+        Pass& pass = passes[begin / kPassVertices];
+        pass = {all.choice, true, {}, all.largest, all.max};
         code(some.subspan(begin, end - begin), pass);
       });
       for (const Pass& pass : passes) {
         for (std::size_t i = 0; i < pass.chosen.size(); i += count_) {
           all.choice->follow(std::span(pass.chosen).subspan(i, count_));
         }
-        all.most = std::max(all.most, pass.most);
+        all.max = std::max(all.max, pass.max);
         for (std::size_t l = 0; l < count_; ++l) {
           all.largest[l] = std::max(all.largest[l], pass.largest[l]);
         }
@@ -189,15 +189,15 @@ class SpatialCoder {
     if (pass.choice) pass.choice->start(v);
     for (std::size_t l = 0; l < count_; ++l) {
       const double wanted = factors[l] * per_step_;
-      pass.most = std::max(pass.most, std::abs(wanted));
-      const std::int64_t of_weights =
+      pass.max = std::max(pass.max, std::abs(wanted));
+      const std::int64_t predicted_factor =
           adaptation != nullptr ? adaptation->predict() : predicted[l];
       const std::int32_t residual =
-          rounded((wanted - static_cast<double>(of_weights)) / layer_step, pass);
+          rounded((wanted - static_cast<double>(predicted_factor)) / layer_step, pass);
       result_.residual[v * count_ + l] = residual;
-      const std::int32_t value =
-          clip_signed(kMaxSpatialBits, of_weights + factor_difference(residual, layer_step));
-      if (adaptation != nullptr) adaptation->add(of_weights, value);
+      const std::int32_t value = clip_signed(
+          kMaxSpatialBits, predicted_factor + factor_difference(residual, layer_step));
+      if (adaptation != nullptr) adaptation->add(predicted_factor, value);
       result_.values[v * count_ + l] = value;
       pass.largest[l] = std::max(pass.largest[l], value < 0 ? ~value : value);
     }

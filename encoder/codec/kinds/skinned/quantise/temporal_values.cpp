@@ -15,12 +15,12 @@ namespace rlpc {
 namespace {
 
 // Products of steps, in eighths of an octave, have a scale_idx up to this one.
-constexpr int kMostEighths = kMaxScaleIdx - 8 * 4;  // fixed: format
+constexpr int kMaxEighths = kMaxScaleIdx - 8 * 4;  // fixed: format
 
 double largest_magnitude(const std::vector<double>& values) {
-  double most = 0.0;
-  for (const double x : values) most = std::max(most, std::abs(x));
-  return most;
+  double max = 0.0;
+  for (const double x : values) max = std::max(max, std::abs(x));
+  return max;
 }
 
 class TemporalCoder {
@@ -34,10 +34,10 @@ class TemporalCoder {
 
   TemporalValues code(const TemporalLimits& limits) {
     TemporalValues values;
-    values.of_gof.resize(analysis_.gofs.size());
+    values.gof_trajectories.resize(analysis_.gofs.size());
     std::size_t& l = values.num_tried;
     for (; l < analysis_.pc.temporal.size() && values.size() < limits.max_trajectories; ++l) {
-      if (!code(l, limits.least_eighths, values)) break;
+      if (!code(l, limits.min_eighths, values)) break;
     }
     return values;
   }
@@ -45,10 +45,10 @@ class TemporalCoder {
  private:
   // Codes a component with the step that gives equal distortion. False: the component is not
   // worth its bits.
-  bool code(std::size_t l, int least_eighths, TemporalValues& values) {
+  bool code(std::size_t l, int min_eighths, TemporalValues& values) {
     const std::size_t num_frames = tracks_.num_frames();
     const std::vector<double>& temporal = analysis_.pc.temporal[l];
-    const int eighths = eighths_of(l, least_eighths);
+    const int eighths = eighths_of(l, min_eighths);
     const double unit = power_of_eighths(eighths) / step_;
     std::vector<std::array<double, 3>> wanted(num_frames);
     for (std::size_t f = 0; f < num_frames; ++f) {
@@ -56,12 +56,12 @@ class TemporalCoder {
     }
     SpanTracks::Coded coded = tracks_.code(wanted, unit);
     const double saved = analysis_.pc.energy[l] * (1.0 - coded.cost.error * unit * unit);
-    if (saved < least_worth(coded.cost.bits, l)) return false;
+    if (saved < min_worth(coded.cost.bits, l)) return false;
     values.eighths.push_back(eighths);
     values.indices.push_back(tracks_.indices(coded));
     tracks_.follow(coded);
-    for (std::size_t g = 0; g < coded.of_gof.size(); ++g) {
-      values.of_gof[g].push_back(std::move(coded.of_gof[g]));
+    for (std::size_t g = 0; g < coded.gof_trajectories.size(); ++g) {
+      values.gof_trajectories[g].push_back(std::move(coded.gof_trajectories[g]));
     }
     std::vector<double>& decoded = values.decoded.emplace_back(3 * num_frames);
     for (std::size_t f = 0; f < num_frames; ++f) {
@@ -73,17 +73,17 @@ class TemporalCoder {
   }
 
   // Returns the exponent of the product of both steps, 2^(eighths / 8), which the stream codes.
-  int eighths_of(std::size_t l, int least_eighths) const {
+  int eighths_of(std::size_t l, int min_eighths) const {
     const double error = temporal_error(analysis_.rig);
     const double wanted = step_ * std::sqrt(error / importance(l)) * step_;
-    const double least = step_ * largest_magnitude(analysis_.pc.temporal[l]) / kMostTemporal;
-    return std::clamp(static_cast<int>(round_to_int(8.0 * det_log2(std::max(wanted, least)))),
-                      least_eighths, kMostEighths);
+    const double min = step_ * largest_magnitude(analysis_.pc.temporal[l]) / kMaxTemporal;
+    return std::clamp(static_cast<int>(round_to_int(8.0 * det_log2(std::max(wanted, min)))),
+                      min_eighths, kMaxEighths);
   }
 
   // Returns the energy that a trajectory must save: the cost of its temporal values, and the
   // cost and error of its spatial factors.
-  double least_worth(double bits, std::size_t l) const {
+  double min_worth(double bits, std::size_t l) const {
     const double error = step_ * step_ / 12.0;
     const std::size_t width = analysis_.pc.temporal.size();
     const std::size_t places = analysis_.spatial_left.size() / width;

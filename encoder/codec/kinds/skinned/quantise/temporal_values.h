@@ -22,7 +22,8 @@ inline double temporal_error(const SharedRig& rig) {
 }
 
 struct TemporalValues {
-  std::vector<std::vector<Trajectory>> of_gof;  // [GOF][trajectory], weights and residuals
+  std::vector<std::vector<Trajectory>>
+      gof_trajectories;      // [GOF][trajectory], weights and residuals
   std::vector<int> eighths;  // [trajectory], product of both steps is 2^(eighths / 8)
   std::vector<std::vector<Vec3i>> indices;   // [trajectory][frame]
   std::vector<std::vector<double>> decoded;  // [trajectory][3 * num_frames], unit vectors
@@ -33,7 +34,7 @@ struct TemporalValues {
 
 struct TemporalLimits {
   std::size_t max_trajectories = 0;
-  int least_eighths = -1000;  // finest product of steps that fits the format
+  int min_eighths = -1000;  // finest product of steps that fits the format
 };
 
 // step: quantiser step, grid units.

@@ -141,7 +141,7 @@ void PoseFit::fit_some(const SpanFrames& frames, std::span<const std::uint32_t> 
   }
   Motions now = rigid_motions(frames, chosen.front(), centres.front());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const std::vector<Motion> wanted = targets.of_frame(i);
+    const std::vector<Motion> wanted = targets.frame_motions(i);
     fit_poses(moments_, wanted, now);
     motions[i] = now;
     for (int k = 0; k < kRounds && !is_free_; ++k) keep_joints(wanted, centres[i], motions[i]);
@@ -160,9 +160,9 @@ std::vector<std::vector<WantedPose>> PoseFit::fit(const SpanFrames& frames,
   std::vector<std::vector<WantedPose>> poses(rig_.bones.size());
   for (std::size_t b = 0; b < poses.size(); ++b) {
     const Vec3d pivot = point_of(rig_.bones[b].pivot);
-    for (const Motions& of_frame : motions) {
+    for (const Motions& frame_motions : motions) {
       poses[b].push_back(
-          pose_of(of_frame[b], pivot, poses[b].empty() ? nullptr : &poses[b].back()));
+          pose_of(frame_motions[b], pivot, poses[b].empty() ? nullptr : &poses[b].back()));
     }
   }
   return poses;

@@ -111,11 +111,11 @@ TEST(PoseFit, FindsThePosesOfAllBones) {
 TEST(PoseFit, QuaternionsKeepTheirSign) {
   const Arm arm;
   const SpanFrames frames = arm.moved(arm.poses(20, 0.0));
-  for (const auto& of_bone : PoseFit(arm.rig, arm.rest).fit(frames, numbers_from(0, 20))) {
-    for (std::size_t f = 1; f < of_bone.size(); ++f) {
+  for (const auto& bone_motions : PoseFit(arm.rig, arm.rest).fit(frames, numbers_from(0, 20))) {
+    for (std::size_t f = 1; f < bone_motions.size(); ++f) {
       double same = 0.0;
       for (std::size_t k = 0; k < 4; ++k) {
-        same += of_bone[f].rotation[k] * of_bone[f - 1].rotation[k];
+        same += bone_motions[f].rotation[k] * bone_motions[f - 1].rotation[k];
       }
       EXPECT_GT(same, 0.5) << f;
     }

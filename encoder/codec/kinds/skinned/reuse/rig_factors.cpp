@@ -99,9 +99,9 @@ TrajectoryRows RigRemainder::rows() const {
 
 void RigRemainder::write(std::size_t first, std::span<double> rows) const {
   const std::size_t size = rows.size() / width();
-  constexpr std::size_t kOfPass = 32;  // fixed: vertices of a pass
+  constexpr std::size_t kPassVertices = 32;  // fixed: vertices of a pass
   const SharedRig& rig = *kept_.rig;
-  for_ranges(size, kOfPass, [&](std::size_t i, std::size_t end) {
+  for_ranges(size, kPassVertices, [&](std::size_t i, std::size_t end) {
     MeanMotions motions(motions_);
     for (; i < end; ++i) {
       const auto v = static_cast<std::uint32_t>(first + i);

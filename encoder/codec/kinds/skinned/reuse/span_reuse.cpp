@@ -39,9 +39,9 @@ class SpanReuse {
         poses_(rig_, kept.rest),
         factors_(kept) {
     settings_.prediction = rig_.prediction;
-    const std::size_t most =
+    const std::size_t max_factors =
         std::min<std::size_t>(settings_.max_trajectories, kLevels.back().max_components);
-    settings_.max_trajectories = most - std::min(most, factors_.count());
+    settings_.max_trajectories = max_factors - std::min(max_factors, factors_.count());
   }
 
   double expected_cost() const;
@@ -61,7 +61,7 @@ class SpanReuse {
   // Returns the residual in frames of the span. has_temporal: after the decoded temporal
   // values.
   RigRemainder remainder(const FrameRange& span, bool has_temporal) const;
-  double least_energy() const { return step_ * step_ / 12.0 * frames_.num_vertices; }
+  double min_energy() const { return step_ * step_ / 12.0 * frames_.num_vertices; }
 
   const SkinnedContext& context_;
   const KeptRig& kept_;
@@ -90,8 +90,8 @@ double SpanReuse::expected_cost() const {
   }
   std::vector<std::vector<WantedPose>> poses(rig_.bones.size());
   for (const std::uint32_t f : chosen) {
-    const auto of_frame = poses_.fit(frames_, std::span(&f, 1));
-    for (std::size_t b = 0; b < poses.size(); ++b) poses[b].push_back(of_frame[b].front());
+    const auto frame_motions = poses_.fit(frames_, std::span(&f, 1));
+    for (std::size_t b = 0; b < poses.size(); ++b) poses[b].push_back(frame_motions[b].front());
   }
   MotionsOfBones motions;
   for (std::size_t b = 0; b < poses.size(); ++b) {
@@ -101,8 +101,7 @@ double SpanReuse::expected_cost() const {
   left.set_temporal(factors_.fit(left.rows()));
   const double frames_in_gof = static_cast<double>(frames_.num_frames) / frames_.num_gofs;
   const double part = frames_in_gof / count;
-  const ComponentsByRow pc =
-      components_by_row(left.rows(), left.width(), least_energy() / part);
+  const ComponentsByRow pc = components_by_row(left.rows(), left.width(), min_energy() / part);
   const std::vector<float> spatial_left = find_spatial_left(mesh_, pc);
   const std::size_t width = pc.temporal.size();
   double cost = part * pc.total_energy;  // cost of a GOF
@@ -149,7 +148,7 @@ RigRemainder SpanReuse::remainder(const FrameRange& span, bool has_temporal) con
 int SpanReuse::eighths_of(std::size_t l, double largest) const {
   const double wanted = step_ * std::sqrt(temporal_error(rig_) / factors_.energy(l));
   return static_cast<int>(
-      round_to_int(8.0 * det_log2(std::max(wanted, largest / kMostTemporal))));
+      round_to_int(8.0 * det_log2(std::max(wanted, largest / kMaxTemporal))));
 }
 
 // Codes a trajectory of the rig. wanted: [3][num_frames]. None: its values do not fit.
@@ -161,10 +160,10 @@ std::optional<SpanReuse::CodedTrajectory> SpanReuse::code_trajectory(
   if (!(factors_.energy(l) > 0.0 && largest > 0.0)) return std::nullopt;
   const int spatial_bits = rig_.trajectories[l].spatial_bits;
   const int shift = spatial_factor_bits(spatial_bits) - spatial_bits;
-  const int of_scale = 8 * (4 - shift + rig_.fraction_bits);  // scale_idx minus eighths
-  const int scale_idx = std::max(eighths_of(l, largest) + of_scale, 0);
+  const int scale_shift = 8 * (4 - shift + rig_.fraction_bits);  // scale_idx minus eighths
+  const int scale_idx = std::max(eighths_of(l, largest) + scale_shift, 0);
   if (scale_idx > kMaxScaleIdx) return std::nullopt;
-  const double unit = power_of_eighths(scale_idx - of_scale);
+  const double unit = power_of_eighths(scale_idx - scale_shift);
   const std::size_t num_frames = frames_.num_frames;
   std::vector<std::array<double, 3>> values(num_frames);
   for (std::size_t f = 0; f < num_frames; ++f) {
@@ -174,11 +173,11 @@ std::optional<SpanReuse::CodedTrajectory> SpanReuse::code_trajectory(
   const std::vector<Vec3i> indices = tracks.indices(found.tracks);
   std::size_t first = 0;
   for (std::size_t g = 0; g < gofs_.size(); ++g) {
-    const auto of_gof = std::span(indices).subspan(first, gofs_[g].num_frames);
-    first += of_gof.size();
-    Trajectory& t = found.tracks.of_gof[g];
+    const auto gof_indices = std::span(indices).subspan(first, gofs_[g].num_frames);
+    first += gof_indices.size();
+    Trajectory& t = found.tracks.gof_trajectories[g];
     t.spatial_bits = spatial_bits;
-    if (t.trajectory_flag && !set_scale(scale_idx, of_gof, t)) return std::nullopt;
+    if (t.trajectory_flag && !set_scale(scale_idx, gof_indices, t)) return std::nullopt;
   }
   for (std::size_t f = 0; f < num_frames; ++f) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -203,7 +202,7 @@ void SpanReuse::code_trajectories() {
     for (std::size_t g = 0; g < gofs_.size(); ++g) {
       Trajectory& t = gofs_[g].trajectories.emplace_back();
       t.trajectory_flag = false;
-      if (coded) t = std::move(coded->tracks.of_gof[g]);
+      if (coded) t = std::move(coded->tracks.gof_trajectories[g]);
     }
   }
 }
@@ -218,7 +217,7 @@ LocalGroup SpanReuse::local_group(const FrameRange& span) const {
   analysis.gofs[0].num_frames = span.count;
   analysis.gofs[0].track_levels = settings_.track_levels;
   analysis.rest = kept_.rest;
-  analysis.pc = components_by_row(left.rows(), settings_.max_trajectories, least_energy());
+  analysis.pc = components_by_row(left.rows(), settings_.max_trajectories, min_energy());
   analysis.spatial_left = find_spatial_left(mesh_, analysis.pc);
   return code_local_group(mesh_, analysis, *kept_.recon, settings_, step_);
 }
@@ -244,15 +243,17 @@ EncodedSpan SpanReuse::encode() {
 }  // namespace
 
 std::optional<EncodedSpan> encode_with_rig(const SkinnedContext& context, const KeptRig& kept,
-                                           const SpanFrames& frames, double step, double most) {
+                                           const SpanFrames& frames, double step,
+                                           double max_cost) {
   // tuned (off: 1e9): A span is encoded with an earlier rig if its expected cost is at most
   // this multiple of what it must not exceed. Expectations are too high: they leave out that
   // weights of prediction adapt.
   constexpr double kHopeful = 2.0;
   SpanReuse reuse(context, kept, frames, step);
-  if (std::isfinite(most) && reuse.expected_cost() > kHopeful * most) return std::nullopt;
+  if (std::isfinite(max_cost) && reuse.expected_cost() > kHopeful * max_cost)
+    return std::nullopt;
   EncodedSpan encoded = reuse.encode();
-  if (std::isfinite(most) && lagrangian_cost(encoded, frames, step) >= most) {
+  if (std::isfinite(max_cost) && lagrangian_cost(encoded, frames, step) >= max_cost) {
     return std::nullopt;
   }
   return encoded;

@@ -10,9 +10,10 @@
 
 namespace rlpc {
 
-// Encodes a span without a rig of its own. None: it costs at least `most` (Lagrangian cost), or
-// is expected to cost far more. step: quantiser step, grid units.
+// Encodes a span without a rig of its own. None: it costs at least `max_cost` (Lagrangian
+// cost), or is expected to cost far more. step: quantiser step, grid units.
 std::optional<EncodedSpan> encode_with_rig(const SkinnedContext& context, const KeptRig& kept,
-                                           const SpanFrames& frames, double step, double most);
+                                           const SpanFrames& frames, double step,
+                                           double max_cost);
 
 }  // namespace rlpc

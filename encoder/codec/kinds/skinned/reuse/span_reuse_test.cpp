@@ -26,8 +26,8 @@ TEST(SpanReuse, FurtherFramesOfTheSameMotionTakeTracksAlone) {
   ASSERT_TRUE(tube.kept);
   const SpanFrames later = KeptTube::frames(bent, 40, 32);
   const EncodedSpan own = tube.encode_alone(later);
-  const double most = lagrangian_cost(own, later, kTubeStep);
-  const auto encoded = encode_with_rig(tube.context, *tube.kept, later, kTubeStep, most);
+  const double max_cost = lagrangian_cost(own, later, kTubeStep);
+  const auto encoded = encode_with_rig(tube.context, *tube.kept, later, kTubeStep, max_cost);
   ASSERT_TRUE(encoded);
   for (const auto& unit : encoded->units) EXPECT_NE(unit.type, UnitType::kRig);
   EXPECT_EQ(encoded->units.front().type, UnitType::kGof);
@@ -91,8 +91,8 @@ TEST(SpanReuse, RefusesWhatCostsMore) {
         return Point{p[1] + x, p[0] - 0.7 * x, p[2] + x * std::cos(f)};
       },
       40, 32);
-  const double most = 0.5 * lagrangian_cost(tube.encode_alone(later), later, kTubeStep);
-  EXPECT_FALSE(encode_with_rig(tube.context, *tube.kept, later, kTubeStep, most));
+  const double max_cost = 0.5 * lagrangian_cost(tube.encode_alone(later), later, kTubeStep);
+  EXPECT_FALSE(encode_with_rig(tube.context, *tube.kept, later, kTubeStep, max_cost));
 }
 
 TEST(SpanReuse, GivesTheSameBytesOnSeveralThreads) {

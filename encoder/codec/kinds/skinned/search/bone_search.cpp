@@ -57,7 +57,7 @@ constexpr double kFitted = 0.25;    // fixed: measured
 constexpr double kDrafted = 0.5;    // fixed: measured
 constexpr double kCompared = 0.75;  // fixed: measured
 
-constexpr double kLeastError = 1e-6;  // fixed: above zero
+constexpr double kMinError = 1e-6;  // fixed: above zero
 
 }  // namespace
 
@@ -144,28 +144,28 @@ void BoneSearch::grow_all(double step) {
       cost[k] = expected_cost(growth, growth.bones.back(), step);
     });
     progress_(kFitted * static_cast<double>(i + 1) / static_cast<double>(counts.size()));
-    const double of_count = *std::min_element(cost.begin(), cost.end());
-    const double next = of_count - (last - of_count);  // assumes the same gain again
-    last = of_count;
+    const double count_cost = *std::min_element(cost.begin(), cost.end());
+    const double next = count_cost - (last - count_cost);  // assumes the same gain again
+    last = count_cost;
     const bool telling = !all && i + 1 >= kTelling;
-    const bool promising = of_count < worth_trying(step);
+    const bool promising = count_cost < worth_trying(step);
     if (telling && promising && one_ && !is_compared_) {
       is_compared_ = true;
       try_one_bone(SkinnedTrials(context_, frames_, step));  // for its cost, not the trial
     }
     std::vector<Growth*> still;
-    std::vector<double> of_still;
+    std::vector<double> remaining_costs;
     for (std::size_t k = 0; k < growing.size(); ++k) {
       const bool ended = growing[k]->bones.back().count != counts[i];
-      const bool hopeless = telling && cost[k] > (1.0 + kTryMargin) * of_count;
+      const bool hopeless = telling && cost[k] > (1.0 + kTryMargin) * count_cost;
       const bool rises = telling && cost[k] > before[k];
       if (ended || hopeless || rises) continue;
       still.push_back(growing[k]);
-      of_still.push_back(cost[k]);
+      remaining_costs.push_back(cost[k]);
     }
     growing = std::move(still);
-    before = std::move(of_still);
-    if (telling && std::min(next, of_count) >= worth_trying(step)) break;
+    before = std::move(remaining_costs);
+    if (telling && std::min(next, count_cost) >= worth_trying(step)) break;
   }
 }
 
@@ -277,9 +277,9 @@ SkinnedCandidate BoneSearch::likeliest(double step) {
   grow_all(step);
   const std::vector<Candidate> list = candidates(step);
   const bool fast = context_.settings.preset == Preset::kFast;
-  const double most = (fast ? kWithoutTrial : 1.0) * one_bone_cost(step);
+  const double max_cost = (fast ? kWithoutTrial : 1.0) * one_bone_cost(step);
   const bool has_bones =
-      !list.empty() && list.front().is_likely && list.front().expected < most;
+      !list.empty() && list.front().is_likely && list.front().expected < max_cost;
   if (!has_bones) return one_bone(step);
   Growth& growth = growths_[list.front().growth];
   return candidate(growth, growth.bones[list.front().bones], step);
@@ -296,7 +296,7 @@ bool BoneSearch::is_better(const SkinnedTrial& second, const SkinnedTrial& first
   const std::array<const SkinnedTrial*, 2> drafts{&first, &second};
   std::array<double, 2> bits{};
   for_each(2, [&](std::size_t i) {
-    const double error = std::max(drafts[i]->error, kLeastError);
+    const double error = std::max(drafts[i]->error, kMinError);
     const double ratio = std::clamp(wanted_error / error, 1.0 / kFarthest, kFarthest);
     const SkinnedTrials at_error(context_, frames_,
                                  trials.step() * det_exp2(det_log2(ratio) / kErrorPower));

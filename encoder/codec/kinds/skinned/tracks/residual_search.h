@@ -184,7 +184,7 @@ void ResidualSearch<Series>::improve(std::size_t c, std::vector<Vec3i>& residual
 template <class Series>
 void ResidualSearch<Series>::extend(const TrackPlace& at, std::size_t c, const Vec3i& base,
                                     std::uint32_t mean) {
-  constexpr double kMost = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
+  constexpr double kMax = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
   bits_.start(models_[models_of_level(at.level)]);
   num_choices_ = 0;
   for (std::size_t k = 0; k < num_survivors_; ++k) {
@@ -196,7 +196,7 @@ void ResidualSearch<Series>::extend(const TrackPlace& at, std::size_t c, const V
     const double cost =
         survivor.cost + series_.follow(survivor.predicted, survivor.residual, c);
     const double wanted = survivor.predicted.wanted[c];
-    const auto below = static_cast<std::int32_t>(std::floor(std::clamp(wanted, -kMost, kMost)));
+    const auto below = static_cast<std::int32_t>(std::floor(std::clamp(wanted, -kMax, kMax)));
     for (const std::int32_t x : {below, below + 1}) {
       const double error = wanted - x;
       add_choice({cost + error * error + kLambda * bits_.of(survivor.expected, x), x,
@@ -244,11 +244,11 @@ bool ResidualSearch<Series>::is_new(std::size_t i, const Survivor& from,
                                     const Value& value) const {
   const std::size_t count = std::min(breadth_.memory, i + 1);
   for (std::size_t k = 0; k < num_next_; ++k) {
-    const auto of_kept = known(next_[k]);
-    bool alike = series_.are_alike(of_kept(order_[i].frame), value);
+    const auto kept_values = known(next_[k]);
+    bool alike = series_.are_alike(kept_values(order_[i].frame), value);
     for (std::size_t back = 1; back < count && alike; ++back) {
       const std::uint32_t f = order_[i - back].frame;
-      alike = series_.are_alike(of_kept(f), known(from)(f));
+      alike = series_.are_alike(kept_values(f), known(from)(f));
     }
     if (alike) return false;
   }

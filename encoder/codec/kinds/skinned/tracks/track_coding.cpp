@@ -67,8 +67,8 @@ bool fit_weights(Values values, std::size_t stride, int count,
   return true;
 }
 
-int least_between(const TrackOptions& options) { return options.only_levels ? 1 : 0; }
-int most_between(const TrackOptions& options) {
+int min_between(const TrackOptions& options) { return options.only_levels ? 1 : 0; }
+int max_between(const TrackOptions& options) {
   return options.track_levels > 0 ? kMaxBetween : 0;
 }
 
@@ -176,7 +176,7 @@ double expected_bits(const Series& series, const TrackTask& task,
   };
   std::array<std::array<OfLevel, 3>, kMaxTrackLevels + 1> levels;
   for (const TrackPlace& at : task.order) {
-    auto& of_level = levels[static_cast<std::size_t>(at.level)];
+    auto& level_tracks = levels[static_cast<std::size_t>(at.level)];
     typename Series::Predicted predicted;
     for (std::size_t c = 0; c < 3; ++c) {
       if (c == 0 || !Series::kCoupled) {
@@ -184,13 +184,13 @@ double expected_bits(const Series& series, const TrackTask& task,
         predicted = series.predict(
             [&](std::uint32_t f) -> const auto& { return values[f]; }, at, c);
       }
-      of_level[c].sum += std::floor(std::abs(predicted.wanted[c]) + 0.5);
-      of_level[c].count += 1.0;
+      level_tracks[c].sum += std::floor(std::abs(predicted.wanted[c]) + 0.5);
+      level_tracks[c].count += 1.0;
     }
   }
   double bits = task.header_bits;
-  for (const auto& of_level : levels) {
-    for (const OfLevel& of : of_level) {
+  for (const auto& level_tracks : levels) {
+    for (const OfLevel& of : level_tracks) {
       if (of.count > 0.0) bits += of.count * geometric_bits(of.sum / of.count);
     }
   }
@@ -313,7 +313,7 @@ std::vector<Quaternion> code_rotations(std::span<const WantedPose> wanted,
     relative[f] = product(inverse(parent->poses[f].rotation), relative[f]);
   }
   std::vector<Way<Bone>> ways;
-  for (int between = least_between(options); between <= most_between(options); ++between) {
+  for (int between = min_between(options); between <= max_between(options); ++between) {
     for (int order = 1; order <= kMaxPredictorOrder; ++order) {
       Way<Bone>& way = ways.emplace_back(Way<Bone>{bone, between, 0.0});
       way.header.rotation_order = order;
@@ -337,7 +337,7 @@ std::vector<Vec3l> code_offsets(std::span<const WantedPose> wanted, const BoneMo
     }
   }
   std::vector<Way<Bone>> ways;
-  for (int between = least_between(options); between <= most_between(options); ++between) {
+  for (int between = min_between(options); between <= max_between(options); ++between) {
     for (int order = 0; order <= kMaxPredictorOrder; ++order) {
       Way<Bone>& way = ways.emplace_back(Way<Bone>{bone, between, 0.0});
       way.header.origin_order = order;
@@ -365,7 +365,7 @@ TrackCost code_trajectory(std::span<const std::array<double, 3>> values, double 
   }
   std::vector<Way<Trajectory>> ways;
   const int last = options.refine ? kMaxTemporalPredictor : kMaxPredictorOrder;
-  for (int between = least_between(options); between <= most_between(options); ++between) {
+  for (int between = min_between(options); between <= max_between(options); ++between) {
     const std::size_t stride = between > 0 ? std::size_t{1} << options.track_levels : 1;
     for (int predictor = 1; predictor <= last; ++predictor) {
       Way<Trajectory> way{trajectory, between, 0.0};

@@ -55,13 +55,13 @@ std::size_t bytes_of(const TrackResiduals& residuals,
   return section.finish().size();
 }
 
-void expect_close(const Values& values, double most, double step, const Trajectory& trajectory,
+void expect_close(const Values& values, double max, double step, const Trajectory& trajectory,
                   int track_levels) {
   const std::vector<Vec3i> decoded = recon_trajectory(trajectory, track_levels);
   ASSERT_EQ(decoded.size(), values.size());
   for (std::size_t f = 0; f < values.size(); ++f) {
     for (std::size_t c = 0; c < 3; ++c) {
-      ASSERT_LE(std::abs(step * decoded[f][c] - values[f][c]), most * 1.000001) << f;
+      ASSERT_LE(std::abs(step * decoded[f][c] - values[f][c]), max * 1.000001) << f;
     }
   }
 }
@@ -101,10 +101,10 @@ TEST(CodedTrajectories, CostLittleIfPredictable) {
   const std::size_t steady = bytes(values_of([](double f) {
     return std::array<double, 3>{7.0 * f, 5.0 - 3.0 * f, 1000.0};
   }));
-  const std::size_t of_noise = bytes(rough());
-  EXPECT_LT(still, of_noise / 4);
-  EXPECT_LT(steady, of_noise / 4);
-  EXPECT_LT(bytes(smooth()), of_noise * 2 / 3);
+  const std::size_t noise_bytes = bytes(rough());
+  EXPECT_LT(still, noise_bytes / 4);
+  EXPECT_LT(steady, noise_bytes / 4);
+  EXPECT_LT(bytes(smooth()), noise_bytes * 2 / 3);
 }
 
 TEST(CodedTrajectories, FitWeightsToAnOscillation) {
