@@ -126,8 +126,8 @@ class Scene:
             for (place,), value in zip(places, values):
                 rows[place] = value
         if a.get("normalized"):
-            most = FORMATS[component][1]
-            rows = [tuple(max(x / most, -1.0) for x in row) for row in rows]
+            max_integer = FORMATS[component][1]
+            rows = [tuple(max(x / max_integer, -1.0) for x in row) for row in rows]
         self._arrays[number] = rows
         return rows
 
@@ -220,15 +220,15 @@ class Scene:
             joints = self._joints(skin, maps)
             positions, moved = [], []
             for v, p in enumerate(shape["POSITION"]):
-                of_vertex = [[0.0] * 4 for _ in range(3)]
+                vertex_matrix = [[0.0] * 4 for _ in range(3)]
                 for joint, weight in zip(primitive.attributes["JOINTS_0"][v],
                                          primitive.attributes["WEIGHTS_0"][v]):
                     if weight:
                         for i in range(3):
                             for j in range(4):
-                                of_vertex[i][j] += weight * joints[joint][i][j]
-                positions.append(placed(of_vertex, p))
-                moved.append(unit(turned(of_vertex, normals[v])))
+                                vertex_matrix[i][j] += weight * joints[joint][i][j]
+                positions.append(placed(vertex_matrix, p))
+                moved.append(unit(turned(vertex_matrix, normals[v])))
             frames.append((positions, moved))
         return frames
 

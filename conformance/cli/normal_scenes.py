@@ -145,10 +145,10 @@ def rotation(axis, angle):
     return [math.sin(angle / 2) * x / length for x in axis] + [math.cos(angle / 2)]
 
 
-def turn(builder, node, random, most=2.5):
+def turn(builder, node, random, max_angle=2.5):
     axis = [random.gauss(0, 1) for _ in range(3)]
     start = random.uniform(0, 6)
-    angle = random.uniform(0.5, most)
+    angle = random.uniform(0.5, max_angle)
     builder.channel(node, "rotation", TIMES, [rotation(axis, start + angle * t) for t in TIMES])
 
 
@@ -234,9 +234,9 @@ def bends(builder, node, random, part):
         if j:
             nodes[-2]["children"] = [first + j]
             turn_axis = [0.0 if c == axis else random.gauss(0, 1) for c in range(3)]
-            most = random.uniform(0.3, 1.2)
+            max_angle = random.uniform(0.3, 1.2)
             builder.channel(first + j, "rotation", TIMES,
-                            [rotation(turn_axis, most * math.sin(3 * t + j)) for t in TIMES])
+                            [rotation(turn_axis, max_angle * math.sin(3 * t + j)) for t in TIMES])
         binds.append([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0,
                       *(-height if c == axis else 0 for c in range(3)), 1])
     builder.json["scenes"][0]["nodes"].append(first)

@@ -136,13 +136,13 @@ class Cutting(CutTest):
                        components, "--max-layers", layers, "--max-temporal-layers", temporal,
                        "--json").json()
         loses = [len(slices) < len(entry.get("slices", [])) for slices, entry in zip(stay, entries)]
-        of_gofs = any(cut or ("rig" in gof and loses[gof["rig"]])  # not unused rigs
-                      for cut, gof in zip(loses[len(rigs):], info["gofs"], strict=True))
-        self.assertEqual(done["cut"], of_gofs)
+        is_cut = any(cut or ("rig" in gof and loses[gof["rig"]])  # not unused rigs
+                     for cut, gof in zip(loses[len(rigs):], info["gofs"], strict=True))
+        self.assertEqual(done["cut"], is_cut)
         kinds = [code for code, _ in before]
         hashed = kinds.count(GOF) == kinds.count(GOF_HASH)
         if SLICES[1] not in kinds:  # frame units can have hashes of their own
-            self.assertEqual(done["hashes_verified"], hashed and not of_gofs)
+            self.assertEqual(done["hashes_verified"], hashed and not is_cut)
         self.assertEqual(self.path("cut.rlpd").read_bytes(), self.path("whole.rlpd").read_bytes(),
                          f"seed {seed}")
         return report["cut"]
@@ -198,8 +198,8 @@ class Cutting(CutTest):
     def check_what_is_said(self, path):
         info = self.ok("rlpcinfo", path, "--json").json()
         # The largest number of layers that some GOF must keep.
-        least = max(min((c["layers"] for c in gof["cut_to_layers"] if c["layers"] > 0), default=0)
-                    for gof in info["gofs"] if "cut_to_layers" in gof)
+        lowest = max(min((c["layers"] for c in gof["cut_to_layers"] if c["layers"] > 0), default=0)
+                     for gof in info["gofs"] if "cut_to_layers" in gof)
         for name, key in (("components", "cut_to_components"), ("layers", "cut_to_layers"),
                           ("temporal", "cut_to_temporal_layers")):
             for g, gof in enumerate(info["gofs"]):
@@ -209,7 +209,7 @@ class Cutting(CutTest):
                         continue  # no slices are kept
                     report = self.extract(path, f"{name}={size}", "--json").json()
                     self.assertEqual(report["gofs"][g]["after"]["bytes"], choice["bytes"])
-                    self.assertEqual(report["request_met"], name != "layers" or size >= least)
+                    self.assertEqual(report["request_met"], name != "layers" or size >= lowest)
         said = self.ok("rlpcinfo", path, "--gofs").out.decode()
         self.assertIn("GOF to here", said)
         for gof in self.skinned_gofs(path):

@@ -47,7 +47,7 @@ class MeasuredTest(ToolsTest):
         except BrokenPipeError:
             pass
 
-    def takes(self, most, code, words, tool, *arguments, feed=None):
+    def takes(self, max_growth, code, words, tool, *arguments, feed=None):
         result, memory = self.measured(tool, *arguments, feed=feed)
         self.assertEqual(result.code, code, f"{tool} {arguments}: {result.err}")
         text = result.err + result.out.decode(errors="replace")
@@ -56,7 +56,7 @@ class MeasuredTest(ToolsTest):
         # The peak of a tool that does nothing, which includes memory of this interpreter.
         usual = self.measured(tool, "--version")[1]
         if b"__asan_init" not in (Tools.folder / tool).read_bytes():  # it needs much itself
-            self.assertLess(memory, usual + most + self.SLACK, f"{tool} {arguments}")
+            self.assertLess(memory, usual + max_growth + self.SLACK, f"{tool} {arguments}")
 
 
 def endless(begin, block=bytes(MIB)):
@@ -307,8 +307,8 @@ class Threads(MeasuredTest):
 class EncoderMemory(MeasuredTest):
     """rlpcenc refuses input that may need more than --max-memory, before allocating it."""
 
-    def refused(self, most, words, *arguments):
-        self.takes(most, 1, ["--max-memory", *words], "rlpcenc", *arguments, "-o",
+    def refused(self, max_growth, words, *arguments):
+        self.takes(max_growth, 1, ["--max-memory", *words], "rlpcenc", *arguments, "-o",
                    self.path("out.rlpc"), "-q")
         self.assertFalse(self.path("out.rlpc").exists())
 

@@ -42,7 +42,7 @@ class Live(ToolsTest):
         encoder.stdout.close()
         self.addCleanup(decoder.stdout.close)
         os.set_blocking(decoder.stdout.fileno(), False)
-        out, most = b"", 0
+        out, max_lag = b"", 0
         encoder.stdin.write(self.head)
         for number, frame in enumerate(self.frames[:6]):
             encoder.stdin.write(frame)
@@ -53,8 +53,8 @@ class Live(ToolsTest):
                 self.assertLess(time.monotonic(), deadline, f"frame {number} does not come out")
                 out += decoder.stdout.read() or b""
                 time.sleep(0.005)
-            most = max(most, number + 1 - (len(out) - HEADER) // len(frame))
-        self.assertEqual(most, 0)
+            max_lag = max(max_lag, number + 1 - (len(out) - HEADER) // len(frame))
+        self.assertEqual(max_lag, 0)
         encoder.stdin.close()
         self.assertEqual(encoder.wait(), 0)
         self.assertEqual(decoder.wait(), 0)

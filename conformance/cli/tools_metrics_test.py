@@ -163,12 +163,12 @@ class Metrics(ToolsTest):
     def check_errors(self, a, b, metrics):
         error = math.fsum(math.dist(p, q) ** 2 for f, g in zip(a, b) for p, q in zip(f, g))
         everything = [p for frame in a for p in frame]
-        of_frames = math.fsum(squares(f, mean_vertex(f)) for f in a)
-        of_all = squares(everything, mean_vertex(everything))
-        self.near(metrics["kg_error_percent"], 100 * math.sqrt(error / of_frames), "KG")
-        self.near(metrics["kg_sequence_error_percent"], 100 * math.sqrt(error / of_all), "KG")
-        self.near(metrics["rms_spread"], math.sqrt(of_frames / len(everything)), "spread")
-        self.near(metrics["rms_sequence_spread"], math.sqrt(of_all / len(everything)), "spread")
+        by_frame = math.fsum(squares(f, mean_vertex(f)) for f in a)
+        overall = squares(everything, mean_vertex(everything))
+        self.near(metrics["kg_error_percent"], 100 * math.sqrt(error / by_frame), "KG")
+        self.near(metrics["kg_sequence_error_percent"], 100 * math.sqrt(error / overall), "KG")
+        self.near(metrics["rms_spread"], math.sqrt(by_frame / len(everything)), "spread")
+        self.near(metrics["rms_sequence_spread"], math.sqrt(overall / len(everything)), "spread")
 
     def check_psnr(self, a, b, metrics, columns):
         size = diagonal(*a)

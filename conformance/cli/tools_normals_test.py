@@ -16,13 +16,13 @@ from tools_testing import ToolsTest, main
 
 def areas(count, positions, corners):
     """Twice the area of the triangles of each vertex."""
-    of_vertex = [0.0] * count
+    vertex_areas = [0.0] * count
     for i in range(0, len(corners), 3):
         a, b, c = (positions[v] for v in corners[i:i + 3])
         area = sum(x * x for x in cross(minus(b, a), minus(c, a))) ** 0.5
         for v in corners[i:i + 3]:
-            of_vertex[v] += area
-    return of_vertex
+            vertex_areas[v] += area
+    return vertex_areas
 
 
 def by_number(scene, frame):
@@ -82,12 +82,12 @@ class Comparison:
     def smallest(self):
         return self.rms(self.oracle.errors(self.numbers))
 
-    def of_stream(self):
+    def stream_deviation(self):
         return self.rms({n: self.oracle.mean(n, [degrees(frame[n][0], decoded[n]) for frame, decoded
                                                  in zip(self.frames, self.decoded.normals)])
                          for n in self.numbers})
 
-    def of_bones(self):
+    def bone_deviation(self):
         """Differences from the normals of the stream."""
         return self.rms({n: self.oracle.mean(n, [degrees(bones[n], decoded[n]) for bones, decoded
                                                  in zip(self.by_bones, self.decoded.normals)])
@@ -103,9 +103,9 @@ class NormalsTest(ToolsTest):
     def check(self, name):
         comparison = Comparison(self, name)
         smallest = comparison.smallest()
-        self.assertLessEqual(comparison.of_stream(),
+        self.assertLessEqual(comparison.stream_deviation(),
                              (smallest ** 2 + LOST ** 2) ** 0.5 + ROUNDED)
-        self.assertLessEqual(comparison.of_bones(), BY_BONES)
+        self.assertLessEqual(comparison.bone_deviation(), BY_BONES)
 
 
 class Parts(NormalsTest):

@@ -42,12 +42,12 @@ class Promises(ToolsTest):
             (folder / f"f_{f}.obj").write_text("\n".join(lines) + "\n")
         return folder
 
-    def write_plys(self, frames, of_type):
+    def write_plys(self, frames, number_type):
         folder = self.path("plys")
         folder.mkdir(exist_ok=True)
         for f, frame in enumerate(frames):
             header = ("ply\nformat binary_little_endian 1.0\nelement vertex 4\n"
-                      + "".join(f"property {of_type} {c}\n" for c in "xyz")
+                      + "".join(f"property {number_type} {c}\n" for c in "xyz")
                       + "element face 2\nproperty list uchar int vertex_indices\nend_header\n")
             body = struct.pack("<12d", *frame)
             body += b"".join(struct.pack("<B3i", 3, *t) for t in TRIANGLES)

@@ -43,18 +43,18 @@ class Rigs(ToolsTest):
     def test_rlpcinfo_lists_rigs_with_their_slices(self):
         stream = self.path("a.rlpc")
         self.encode(stream, "--kg", 0.5, "--gof", 20, "--profile", "high")
-        data, at, sizes, of_rigs, is_rig = stream.read_bytes(), 10, [], [], False
+        data, at, sizes, rig_sizes, is_rig = stream.read_bytes(), 10, [], [], False
         while at < len(data):
             size = 9 + int.from_bytes(data[at + 1:at + 5], "big")
             if data[at] in (4, 7):
                 is_rig = data[at] == 7
             if data[at] in (4, 6, 7):
-                (of_rigs if is_rig else sizes).append(size)
+                (rig_sizes if is_rig else sizes).append(size)
             at += size
         info = self.ok("rlpcinfo", stream, "--json").json()
         self.assertEqual([n["bytes"] for g in info["gofs"] for n in (g, *g["slices"])], sizes)
         self.assertEqual([n["bytes"] for m in info["rigs"] for n in (m, *m["slices"])],
-                         of_rigs)
+                         rig_sizes)
         self.assertEqual(sum(info["bits"].values()), 8 * info["bytes"])
         said = self.ok("rlpcinfo", stream, "--gofs").out.decode()
         for words in ("shared rigs: 1, with ", "skinned GOFs with shared rigs: 3, with ",

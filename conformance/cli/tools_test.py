@@ -167,10 +167,10 @@ class RoundTrip(ToolsTest):
             "gof": ((60, True, "hashes agree"), (0, False, "not verified")),
             "frame": ((60, True, "hashes agree"), (20, True, "hashes agree")),
         }
-        for mode, (of_all, of_some) in expected.items():
+        for mode, (result_of_all, result_of_some) in expected.items():
             self.encode(self.path("a.rlpc"), "--kg", 0.5, "--gof", 20, "--hash", mode)
-            for options, (compared, agree, words) in (((), of_all),
-                                                      (("--frames", "5-24"), of_some)):
+            for options, (compared, agree, words) in (((), result_of_all),
+                                                      (("--frames", "5-24"), result_of_some)):
                 found = verified(*options)
                 self.assertEqual(found[:2], (compared, agree), mode)
                 self.assertIn(words, found[2], mode)

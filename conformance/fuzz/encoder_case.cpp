@@ -17,11 +17,11 @@ namespace {
 constexpr std::uint32_t kMaxVertices = 40;
 constexpr std::uint32_t kMaxTriangles = 80;
 constexpr std::uint32_t kMaxCaseFrames = 16;
-constexpr float kMostCoordinate = 0x1p100F;
+constexpr float kMaxCoordinate = 0x1p100F;
 
 float to_float(double x) {
-  constexpr double kMost = std::numeric_limits<float>::max();
-  if (std::abs(x) <= kMost) return static_cast<float>(x);
+  constexpr double kMax = std::numeric_limits<float>::max();
+  if (std::abs(x) <= kMax) return static_cast<float>(x);
   return std::copysign(std::numeric_limits<float>::infinity(),
                        static_cast<float>(x > 0) - 0.5F);
 }
@@ -358,8 +358,8 @@ bool EncoderCase::is_legal() const {
     if (v >= num_vertices) return false;
   }
   for (std::size_t c = 0; c < 3; ++c) {
-    if (!(box_min[c] <= box_max[c] && box_min[c] >= -kMostCoordinate &&
-          box_max[c] <= kMostCoordinate)) {
+    if (!(box_min[c] <= box_max[c] && box_min[c] >= -kMaxCoordinate &&
+          box_max[c] <= kMaxCoordinate)) {
       return false;
     }
   }
@@ -370,7 +370,7 @@ bool EncoderCase::is_legal() const {
 bool EncoderCase::is_legal_frame(std::size_t frame) const {
   const auto& xyz = frames[frame];
   for (std::size_t i = 0; i < xyz.size(); ++i) {
-    const bool within = settings ? std::abs(xyz[i]) <= kMostCoordinate
+    const bool within = settings ? std::abs(xyz[i]) <= kMaxCoordinate
                                  : xyz[i] >= box_min[i % 3] && xyz[i] <= box_max[i % 3];
     if (!within) return false;
   }

@@ -144,7 +144,7 @@ std::optional<std::string> find_violation(const PromiseStream& stream) {
 }
 
 // Whether a value exceeds a bound by more than another order of sums explains.
-bool exceeds(double value, double most) { return value > most * (1.0 + 1e-9); }
+bool exceeds(double value, double max) { return value > max * (1.0 + 1e-9); }
 
 std::optional<std::string> find_broken_promise(const PromiseCase& c,
                                                const PromiseStream& stream,

@@ -86,21 +86,22 @@ static void check_set(rlpc_decoder* decoder, const drawing* d, uint32_t s) {
   CHECK((set.kind == RLPC_VALUE_KIND_SMOOTHING) == (n == 0));
   float* values = numbers(count);
   float* drawn = numbers(n * d->num_drawn);
-  uint32_t* of_corner = numbers(d->num_corners);
+  uint32_t* value_of_corner = numbers(d->num_corners);
   CHECK(rlpc_decoder_attribute_floats(decoder, s, values, count) == RLPC_OK);
-  CHECK(rlpc_decoder_attribute_of_corners(decoder, s, of_corner, d->num_corners) == RLPC_OK);
+  CHECK(rlpc_decoder_attribute_of_corners(decoder, s, value_of_corner, d->num_corners) ==
+        RLPC_OK);
   const rlpc_status status = rlpc_decoder_split_floats(decoder, s, drawn, n * d->num_drawn);
   const int has_drawn = n > 0 && (set.domain == RLPC_DOMAIN_VERTICES ||
                                   (set.domain == RLPC_DOMAIN_CORNERS && d->num_corners > 0));
   CHECK(status == (has_drawn ? RLPC_OK : RLPC_BAD_ARGUMENT));
   for (size_t c = 0; c < d->num_corners && n > 0; ++c) {
-    CHECK(of_corner[c] < set.num_values);
+    CHECK(value_of_corner[c] < set.num_values);
     if (!has_drawn) continue;
-    CHECK(memcmp(drawn + n * d->drawn[c], values + n * of_corner[c], 4 * n) == 0);
+    CHECK(memcmp(drawn + n * d->drawn[c], values + n * value_of_corner[c], 4 * n) == 0);
   }
   free(values);
   free(drawn);
-  free(of_corner);
+  free(value_of_corner);
 }
 
 // Drawn vertices are where their vertices are; their normals are unit vectors, and the same at
@@ -110,7 +111,7 @@ static void check_frame(rlpc_decoder* decoder, const drawing* d) {
   int32_t* positions = numbers(3 * (size_t)d->info.num_vertices);
   int32_t* drawn = numbers(3 * n);
   float* normals = numbers(3 * n);
-  uint32_t* of_corner = numbers(d->num_corners);
+  uint32_t* value_of_corner = numbers(d->num_corners);
   const uint32_t last = d->info.num_frames - 1;
   CHECK(rlpc_decoder_seek(decoder, last) == RLPC_OK);
   CHECK(rlpc_decoder_next_positions(decoder, positions, 3 * (size_t)d->info.num_vertices) ==
@@ -139,10 +140,10 @@ static void check_frame(rlpc_decoder* decoder, const drawing* d) {
     CHECK(rlpc_decoder_attribute(decoder, set, &normal, sizeof normal) == RLPC_OK);
   }
   if (normal.kind == RLPC_VALUE_KIND_SMOOTHING && normal.domain == RLPC_DOMAIN_CORNERS) {
-    CHECK(rlpc_decoder_attribute_of_corners(decoder, set, of_corner, d->num_corners) ==
+    CHECK(rlpc_decoder_attribute_of_corners(decoder, set, value_of_corner, d->num_corners) ==
           RLPC_OK);
     for (size_t c = 1; c < d->num_corners; ++c) {
-      if (of_corner[c] != of_corner[c - 1]) continue;
+      if (value_of_corner[c] != value_of_corner[c - 1]) continue;
       CHECK(memcmp(normals + 3 * (size_t)d->drawn[c], normals + 3 * (size_t)d->drawn[c - 1],
                    12) == 0);
     }
@@ -150,7 +151,7 @@ static void check_frame(rlpc_decoder* decoder, const drawing* d) {
   free(positions);
   free(drawn);
   free(normals);
-  free(of_corner);
+  free(value_of_corner);
 }
 
 static void check_stream(void) {

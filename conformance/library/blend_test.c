@@ -104,8 +104,8 @@ static rlpc_status blend_of(rlpc_decoder* decoder, uint32_t first, uint32_t seco
 static void check_blend(rlpc_decoder* decoder, uint32_t first, uint32_t second, double weight) {
   const rlpc_frame_output output = output_to(mixed, mixed_normals);
   CHECK(blend_of(decoder, first, second, weight, &output) == RLPC_OK);
-  float least[3], most[3];
-  CHECK(rlpc_decoder_bounds(decoder, least, most) == RLPC_OK);
+  float min[3], max[3];
+  CHECK(rlpc_decoder_bounds(decoder, min, max) == RLPC_OK);
   float low[3] = {HUGE_VALF, HUGE_VALF, HUGE_VALF};
   float high[3] = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
   for (int i = 0; i < VALUES; ++i) {
@@ -115,7 +115,7 @@ static void check_blend(rlpc_decoder* decoder, uint32_t first, uint32_t second, 
     low[i % 3] = fminf(low[i % 3], mixed[i]);
     high[i % 3] = fmaxf(high[i % 3], mixed[i]);
   }
-  CHECK(memcmp(low, least, sizeof low) == 0 && memcmp(high, most, sizeof high) == 0);
+  CHECK(memcmp(low, min, sizeof low) == 0 && memcmp(high, max, sizeof high) == 0);
   for (int v = 0; v < VERTICES; ++v) {
     double sum[3], length = 0, apart = 0;
     for (int c = 0; c < 3; ++c) {

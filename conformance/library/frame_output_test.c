@@ -104,13 +104,13 @@ static void test_positions(void) {
     for (int v = 0; v < VERTICES; ++v) {
       for (int c = 0; c < 3; ++c) {
         double x = value(format, stride, v, c);
-        double most = 1.1e-4;
+        double max = 1.1e-4;
         if (format == RLPC_FORMAT_INT32)
           x = ldexp(x + info.grid_origin[c], info.grid_log2_step);
         if (format == RLPC_FORMAT_INT16) x = x * scale[c] + offset[c];
-        if (format == RLPC_FORMAT_INT16) most += scale[c] / 2;
-        if (format == RLPC_FORMAT_HALF) most += 5.0 / 2048;
-        CHECK(fabs(x - expected[v][c]) <= most);
+        if (format == RLPC_FORMAT_INT16) max += scale[c] / 2;
+        if (format == RLPC_FORMAT_HALF) max += 5.0 / 2048;
+        CHECK(fabs(x - expected[v][c]) <= max);
       }
     }
     // Bytes between vertices are not changed.
@@ -208,17 +208,17 @@ static void test_descriptions(void) {
   CHECK(fabs(info.duration_seconds - (FRAMES - 1) / 30.0) < 1e-9);
   for (int c = 0; c < 3; ++c) CHECK(info.range_min[c] <= -1 && info.range_max[c] >= 10);
 
-  float least[3], most[3];
+  float min[3], max[3];
   rlpc_frame_output_init(&output, sizeof output);
   CHECK(rlpc_decoder_frame(decoder, 5, &output) == RLPC_OK);
-  CHECK(rlpc_decoder_bounds(decoder, least, most) == RLPC_OK);
+  CHECK(rlpc_decoder_bounds(decoder, min, max) == RLPC_OK);
   const float expected[6] = {5, 0, 0, 7, 1, 4};
   for (int c = 0; c < 3; ++c) {
-    CHECK(fabsf(least[c] - expected[c]) < 2e-4F && fabsf(most[c] - expected[3 + c]) < 2e-4F);
+    CHECK(fabsf(min[c] - expected[c]) < 2e-4F && fabsf(max[c] - expected[3 + c]) < 2e-4F);
   }
   CHECK(rlpc_decoder_next(decoder, &output) == RLPC_END);
-  CHECK(rlpc_decoder_bounds(decoder, least, most) == RLPC_OK);
-  for (int c = 0; c < 3; ++c) CHECK(fabsf(least[c] - expected[c]) < 2e-4F);
+  CHECK(rlpc_decoder_bounds(decoder, min, max) == RLPC_OK);
+  for (int c = 0; c < 3; ++c) CHECK(fabsf(min[c] - expected[c]) < 2e-4F);
 
   rlpc_gof gofs[FRAMES];
   uint32_t num_gofs = 0;
@@ -275,8 +275,8 @@ static void test_one_vertex(void) {
 int main(void) {
   encode();
   CHECK(rlpc_decoder_open_memory(encoded, encoded_size, NULL, &decoder) == RLPC_OK);
-  float least[3], most[3];
-  CHECK(rlpc_decoder_bounds(decoder, least, most) == RLPC_BAD_ARGUMENT);
+  float min[3], max[3];
+  CHECK(rlpc_decoder_bounds(decoder, min, max) == RLPC_BAD_ARGUMENT);
   test_positions();
   test_normals();
   test_refusals();

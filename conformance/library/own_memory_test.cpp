@@ -113,12 +113,12 @@ Bytes read(const fs::path& path) {
 
 // Returns small streams of all versions and kinds of GOF.
 std::vector<fs::path> streams() {
-  constexpr std::uintmax_t kMostBytes = 20000;
+  constexpr std::uintmax_t kMaxBytes = 20000;
   std::vector<fs::path> found;
   for (const auto& entry :
        fs::recursive_directory_iterator(fs::path(RLPC_SOURCE_DIR) / "streams")) {
     const bool is_accepted = entry.path().string().find("accept") != std::string::npos;
-    if (entry.path().extension() == ".rlpc" && is_accepted && entry.file_size() <= kMostBytes) {
+    if (entry.path().extension() == ".rlpc" && is_accepted && entry.file_size() <= kMaxBytes) {
       found.push_back(entry.path());
     }
   }

@@ -72,7 +72,7 @@ static void decode(uint32_t frame) {
 
 // Skins as a graphics card does. Returns the largest distance from the frame; mean: average.
 static double skin_error(uint32_t slots, double* mean) {
-  double most = 0, sum = 0;
+  double max = 0, sum = 0;
   for (size_t v = 0; v < VERTICES; ++v) {
     double at[3] = {0, 0, 0}, squares = 0;
     for (size_t k = 0; k < slots; ++k) {
@@ -88,11 +88,11 @@ static double skin_error(uint32_t slots, double* mean) {
       const double apart = at[c] - (double)frame_xyz[3 * v + c];
       squares += apart * apart;
     }
-    most = fmax(most, sqrt(squares));
+    max = fmax(max, sqrt(squares));
     sum += sqrt(squares);
   }
   *mean = sum / VERTICES;
-  return most;
+  return max;
 }
 
 static void check_influences(uint32_t slots, uint32_t num_bones) {
@@ -143,9 +143,9 @@ static void test_skinning(uint32_t first, uint32_t count) {
     CHECK(now.skeleton == pose.skeleton && now.num_bones == pose.num_bones);
     CHECK(rlpc_decoder_bone_matrices(decoder, matrices, 16 * now.num_bones) == RLPC_OK);
     double mean;
-    const double most = skin_error(slots, &mean);
-    if (f == first) CHECK(most < 1e-4);  // exact except for rounding
-    CHECK(most < 1e-3 && mean < 1e-4);   // the tube is 4 long, and bones leave nothing
+    const double max = skin_error(slots, &mean);
+    if (f == first) CHECK(max < 1e-4);  // exact except for rounding
+    CHECK(max < 1e-3 && mean < 1e-4);   // the tube is 4 long, and bones leave nothing
   }
 }
 

@@ -26,8 +26,8 @@
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kOfDecoder = std::size_t{64} << 10;
-constexpr std::size_t kOfEncoder = std::size_t{256} << 10;
+constexpr std::size_t kDecoderStack = std::size_t{64} << 10;
+constexpr std::size_t kEncoderStack = std::size_t{256} << 10;
 
 void* call(void* work) {
   (*static_cast<const std::function<void()>*>(work))();
@@ -55,11 +55,11 @@ std::size_t stack_of(const std::function<void()>& work) {
   return used;
 }
 
-void expect_within(std::size_t used, std::size_t most, const std::string& what) {
+void expect_within(std::size_t used, std::size_t max, const std::string& what) {
 #ifdef RLPC_LARGER_FRAMES
-  EXPECT_GT(used, 0U) << what << most;
+  EXPECT_GT(used, 0U) << what << max;
 #else
-  EXPECT_LE(used, most) << what;
+  EXPECT_LE(used, max) << what;
 #endif
 }
 
@@ -97,7 +97,7 @@ TEST(SmallStack, SufficesForTheDecoder) {
     const std::string path = entry.path().string();
     if (entry.path().extension() != ".rlpc" || path.find("/v1.") == path.npos) continue;
     for (const std::uint32_t threads : {1U, 3U}) {
-      expect_within(stack_of([&] { decode(path, threads); }), kOfDecoder, path);
+      expect_within(stack_of([&] { decode(path, threads); }), kDecoderStack, path);
     }
     ++num_streams;
   }
@@ -124,7 +124,7 @@ TEST(SmallStack, SufficesForTheEncoder) {
           EXPECT_EQ(strip.add_all(encoder), RLPC_OK) << rlpc_encoder_error_text(encoder);
           rlpc_encoder_close(encoder);
         });
-        expect_within(used, kOfEncoder,
+        expect_within(used, kEncoderStack,
                       "profile " + std::to_string(profile) + ", preset " +
                           std::to_string(preset) + ", kg " + std::to_string(kg));
       }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """A shared library in C exports exactly the functions that its headers declare; with --decoder, the
-headers of the decoder alone. Stripped, it is no larger than --most-bytes."""
+headers of the decoder alone. Stripped, it is no larger than --max-bytes."""
 
 import argparse
 import pathlib
@@ -28,9 +28,9 @@ def small_enough(args):
         subprocess.run([args.strip, args.library, "-o", stripped], check=True)
         num_bytes = stripped.stat().st_size
     print(f"{num_bytes} bytes when stripped")
-    if args.most_bytes is None or num_bytes <= args.most_bytes:
+    if args.max_bytes is None or num_bytes <= args.max_bytes:
         return True
-    print(f"that is more than {args.most_bytes}")
+    print(f"that is more than {args.max_bytes}")
     return False
 
 
@@ -40,7 +40,7 @@ def main():
     parser.add_argument("--nm", default="nm")
     parser.add_argument("--strip", default="strip")
     parser.add_argument("--decoder", action="store_true")
-    parser.add_argument("--most-bytes", type=int)
+    parser.add_argument("--max-bytes", type=int)
     args = parser.parse_args()
     headers = [header for header in HEADERS if not args.decoder or "encoder" not in header]
     lines = subprocess.run([args.nm, "-D", "--defined-only", args.library], check=True,

@@ -54,9 +54,9 @@ class StreamSource final : public FrameSource {
 InputResult<ComparisonInput> open_stream(const std::string& path,
                                          std::uint64_t max_memory_bytes) {
   DecoderOptions options;
-  std::uint64_t& most = options.limits.max_memory_bytes;
-  if (max_memory_bytes != kUsualEncoderBytes) most = max_memory_bytes;
-  auto bytes = file_source(path, most);
+  std::uint64_t& max = options.limits.max_memory_bytes;
+  if (max_memory_bytes != kUsualEncoderBytes) max = max_memory_bytes;
+  auto bytes = file_source(path, max);
   if (!bytes) return InputError{path + ": " + describe_error(bytes.error())};
   ComparisonInput input;
   input.name = path;
@@ -130,9 +130,9 @@ InputResult<ComparisonPair> open_comparison_pair(const InputOptions& options_a,
   b = add_cache(std::move(*b), options_b, a->frames->num_frames());
   if (!b) return b.error();
 
-  const auto differ = [&](const std::string& of_a, std::uint32_t of_b) {
-    return InputError{a->name + " has " + of_a + ", but " + b->name + " has " +
-                      std::to_string(of_b)};
+  const auto differ = [&](const std::string& count_a, std::uint32_t count_b) {
+    return InputError{a->name + " has " + count_a + ", but " + b->name + " has " +
+                      std::to_string(count_b)};
   };
   if (a->frames->num_vertices() != b->frames->num_vertices()) {
     return differ(count_text(a->frames->num_vertices(), "vertex", "vertices"),

@@ -14,8 +14,8 @@ namespace {
 // Reads one index per line, a permutation of 0 .. num_vertices - 1.
 InputResult<std::vector<std::uint32_t>> read_order_map(const std::string& path,
                                                        std::uint32_t num_vertices) {
-  constexpr std::size_t kMostLineBytes = 32;
-  const auto text = read_small_file(path, kMostLineBytes * (std::size_t{num_vertices} + 1));
+  constexpr std::size_t kMaxLineBytes = 32;
+  const auto text = read_small_file(path, kMaxLineBytes * (std::size_t{num_vertices} + 1));
   if (!text) {
     return InputError{path + ": cannot be read, or is too long for " +
                       std::to_string(num_vertices) + " vertices"};

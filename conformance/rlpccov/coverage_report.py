@@ -236,10 +236,10 @@ def widths_page(result):
     rows = [(clause, bits or "", _code(text) if bits else "never computed",
              _code(key) if bits else "", stated.get(clause, ""))
             for clause, (bits, text, key) in sorted(widest.items(), key=lambda i: _order(i[0]))]
-    most = max((bits for bits, *_ in widest.values()), default=0)
+    max_bits = max((bits for bits, *_ in widest.values()), default=0)
     headline = (f"{computed} of {total} arithmetic expressions are computed; the widest result "
-                f"has {most} bits.")
-    lines = ["# Widths", "", f"**{most} of 64** bits, sign included; **{computed} of {total}** "
+                f"has {max_bits} bits.")
+    lines = ["# Widths", "", f"**{max_bits} of 64** bits, sign included; **{computed} of {total}** "
              "arithmetic expressions computed.", ""]
     lines += _table("Widest result of each clause",
                     ("clause", "bits", "expression", "in", "stated"), rows)

@@ -92,9 +92,9 @@ class Commands(rlpccov_test.FolderTest):
         self.run_tool(self.streams, "--report", self.folder)
         smallest = self.folder / "smallest_set.txt"
         self.assertEqual(smallest.read_text(), output)
-        of_set = self.run_tool(self.streams, "--set", smallest)[1]
-        self.assertTrue(of_set.startswith("4 streams reach "), of_set)
-        self.assertEqual(of_set.split("reach")[1],
+        set_goals = self.run_tool(self.streams, "--set", smallest)[1]
+        self.assertTrue(set_goals.startswith("4 streams reach "), set_goals)
+        self.assertEqual(set_goals.split("reach")[1],
                          self.run_tool(self.streams)[1].split("reach")[1])
 
     def test_a_set_with_a_stream_that_is_gone_is_an_error(self):

@@ -122,9 +122,9 @@ class HighSource(random_attributes.AttributeSource, random_main.MainSource):
     def _earlier(self, ns):
         place = ns["PlaceOfFrame"][ns["UnitFrame"]]
         layer = ns["TemporalLayerOfFrame"]
-        most = layer(ns["UnitFrame"])
+        maximum = layer(ns["UnitFrame"])
         return [i for i in range(min(place, ns["max_earlier_distance"]))
-                if layer(ns["FrameOrder"][place - 1 - i]) <= most]
+                if layer(ns["FrameOrder"][place - 1 - i]) <= maximum]
 
     def _pattern_period_log2(self, ns, indices, arguments):
         return self.numbers.between(1, 3)
@@ -156,8 +156,8 @@ class HighSource(random_attributes.AttributeSource, random_main.MainSource):
         return self.numbers.between(max(ns["DepthAtOffset"][i] for i in references), 3)
 
     def _temporal_layers_minus1(self, ns, indices, arguments):
-        most = ns["MaxLearningVertices"] // ns["NumVertices"]
-        return self.near(0, min(ns["NumDepths"], most) - 1)
+        maximum = ns["MaxLearningVertices"] // ns["NumVertices"]
+        return self.near(0, min(ns["NumDepths"], maximum) - 1)
 
     def _gof_end_flag(self, ns, indices, arguments):
         return int(self.ends_gof)
@@ -241,9 +241,9 @@ class HighSequence(random_main.MainSequence):
     def _gof(self):
         # R-IDX-05; where the end is open, the GOF that follows has a frame at least.
         ns = self._writer.ns
-        most = ns["NumParsedFrames"] + 1 if self._plan.open_end else ns["NumFrames"]
+        maximum = ns["NumParsedFrames"] + 1 if self._plan.open_end else ns["NumFrames"]
         while (self._n.chance(self._plan.rigs_percent)
-               and len(self._writer.rig_indices) < most):
+               and len(self._writer.rig_indices) < maximum):
             self._unit("RIG")
             self._slices()
             self._skippable()
@@ -273,22 +273,22 @@ class HighSequence(random_main.MainSequence):
         ns, source = self._writer.ns, self._writer.source
         if ns["num_layer_groups_minus1"] == 0 and ns["open_end_flag"] == 0:
             return self._shared_units()
-        most = [ns["num_layer_groups_minus1"] + 1] * (ns["temporal_layers_minus1"] + 1)
+        maximum = [ns["num_layer_groups_minus1"] + 1] * (ns["temporal_layers_minus1"] + 1)
         place = -1
         while place + 1 < ns["NumGofFrames"]:
             place += 1
             frame = ns["FrameOrder"][place]
             layer = ns["TemporalLayerOfFrame"](frame)
             if self._n.chance(self._plan.cut_percent):
-                most[layer] = self._n.between(0, most[layer])
-                most[layer:] = [min(n, most[layer]) for n in most[layer:]]
+                maximum[layer] = self._n.between(0, maximum[layer])
+                maximum[layer:] = [min(n, maximum[layer]) for n in maximum[layer:]]
             source.unit_frames = self._unit_frames(place)
-            for group in range(most[layer]):
+            for group in range(maximum[layer]):
                 source.slice = frame, group
                 self._unit("FRAME")
                 if ns["repeat_flag"]:
                     break
-            if most[layer] > 0:
+            if maximum[layer] > 0:
                 place += source.unit_frames - 1
             # The order stays if no period is cut off.
             if (ns["open_end_flag"] and self._n.chance(10) and place + 1 < ns["NumGofFrames"]
@@ -316,8 +316,8 @@ class HighSequence(random_main.MainSequence):
                 left[t] = []
                 left[t + 1:] = [[p for p in places if p < first] for places in left[t + 1:]]
                 continue
-            most = 1 if self._n.chance(50) else len(ready[t])
-            source.unit_frames = self._n.between(1, most)
+            maximum = 1 if self._n.chance(50) else len(ready[t])
+            source.unit_frames = self._n.between(1, maximum)
             source.slice = ns["FrameOrder"][left[t][0]], 0
             self._unit("FRAME")
             del left[t][:source.unit_frames]

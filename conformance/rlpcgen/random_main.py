@@ -142,14 +142,14 @@ class MainSequence(random_streams.Sequence):
         ns = self._writer.ns
         self._groups(range(ns["num_component_groups"] + 1), ns["num_layer_groups_minus1"] + 1)
 
-    def _groups(self, groups, most):
-        """The slices of component groups; most: of layer groups that they can have."""
+    def _groups(self, groups, max_layers):
+        """The slices of component groups, with at most max_layers layer groups each."""
         for group in groups:
             if self._n.chance(self._plan.cut_percent):
-                most = self._n.between(0, most)
-            for layers in range(most):
+                max_layers = self._n.between(0, max_layers)
+            for layers in range(max_layers):
                 self._slice(group, layers)
-            if most == 0:
+            if max_layers == 0:
                 break
 
     def _slice(self, group, layers):

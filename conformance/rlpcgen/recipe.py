@@ -115,8 +115,8 @@ class Values:
         """0, or in some cases a number of any magnitude up to a limit."""
         if not self._numbers.chance(percent):
             return 0
-        most = (1 << self._numbers.between(1, limit.bit_length())) - 1
-        magnitude = min(limit, self._numbers.between(1, most))
+        max_magnitude = (1 << self._numbers.between(1, limit.bit_length())) - 1
+        magnitude = min(limit, self._numbers.between(1, max_magnitude))
         return -magnitude if self._numbers.chance(50) else magnitude
 
     def next(self):

@@ -130,8 +130,8 @@ CodedAttributeSet random_set(Draw& draw, std::uint32_t s, const Mesh& mesh,
   const bool is_float = set.header.kind == ValueKind::kFloats;
   for (std::size_t i = 0; i < count * set.header.num_components; ++i) {
     if (is_triangle) {
-      const auto most = static_cast<std::uint32_t>(set.header.max_value());
-      set.residuals.push_back((draw.chance(40) ? draw.below(3) : draw.word()) & most);
+      const auto max = static_cast<std::uint32_t>(set.header.max_value());
+      set.residuals.push_back((draw.chance(40) ? draw.below(3) : draw.word()) & max);
     } else {
       set.residuals.push_back(is_float ? draw.word()
                                        : static_cast<std::uint32_t>(draw.residual(28)));

@@ -76,11 +76,11 @@ class Generator {
     return n == 0 ? 0 : static_cast<std::uint32_t>(random_() % n);
   }
   bool coin() { return random_() % 2 == 0; }
-  int between(int least, int most) {
+  int between(int min, int max) {
     const auto kind = random_() % 6;
-    if (kind == 0) return least;
-    if (kind == 1) return most;
-    return least + static_cast<int>(below(static_cast<std::uint32_t>(most - least + 1)));
+    if (kind == 0) return min;
+    if (kind == 1) return max;
+    return min + static_cast<int>(below(static_cast<std::uint32_t>(max - min + 1)));
   }
   std::int32_t residual(int bits) {
     if (random_() % 64 == 0) bits = kResidualBits;
@@ -218,12 +218,12 @@ TEST(ClusterGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
   Generator generator(1);
   ClusterGof gof = generator.gof(40, 8, 1);
   while (gof.seed_tracks.empty() || gof.num_frames < 4) gof = generator.gof(40, 8, 1);
-  const auto most = static_cast<std::int32_t>(kMaxResidual);
+  const auto max = static_cast<std::int32_t>(kMaxResidual);
   for (const int period : {1, 2, 7, 50}) {
     int count = 0;
     const auto next = [&] {
       ++count;
-      return count / period % 2 == 0 ? 0 : count % 2 == 0 ? most : -most;
+      return count / period % 2 == 0 ? 0 : count % 2 == 0 ? max : -max;
     };
     for (Vec3i& r : gof.seed_tracks[0].residual) r = {next(), next(), next()};
     gof.clusters[0].components.resize(3);
@@ -268,9 +268,9 @@ void expect_memory_within_estimate(const Generator& from, const ClusterGof& gof)
     std::vector<std::int32_t> positions(3 * std::size_t{from.header.num_vertices});
     recon.frame(0, positions);
   }
-  const std::size_t of_any =
+  const std::size_t any_gof_bytes =
       300'000 + 100 * std::size_t{from.header.num_vertices} + 300 * gof.clusters.size();
-  EXPECT_LE(memory_count.peak - before, estimate + of_any);
+  EXPECT_LE(memory_count.peak - before, estimate + any_gof_bytes);
 }
 
 TEST(GofMemory, StaysWithinWhatIsComparedWithTheLimit) {

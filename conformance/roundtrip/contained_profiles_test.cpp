@@ -16,9 +16,9 @@
 namespace rlpc {
 namespace {
 
-constexpr double kMostLarger = 1.01;
+constexpr double kMaxLarger = 1.01;
 // Bytes of an index that lists shared rigs, and of flags of the sequence and of each GOF.
-constexpr std::size_t kMostMore = 6;
+constexpr std::size_t kMaxMore = 6;
 
 using Frames = std::vector<std::vector<float>>;
 
@@ -134,7 +134,7 @@ void expect_none_larger(const RandomAnimation& animation, const EncoderSettings&
   std::size_t before = bytes_of(animation, settings, Profile::kBaseline);
   for (const Profile profile : {Profile::kMain, Profile::kHigh}) {
     const std::size_t bytes = bytes_of(animation, settings, profile);
-    EXPECT_LE(static_cast<double>(bytes), kMostLarger * static_cast<double>(before) + kMostMore)
+    EXPECT_LE(static_cast<double>(bytes), kMaxLarger * static_cast<double>(before) + kMaxMore)
         << "profile " << static_cast<int>(profile) << ", " << before << " bytes before";
     before = std::min(before, bytes);
   }

@@ -407,11 +407,12 @@ TEST(Hashes, ThoseOfAGofCoverItsFramesIfTheyCameInOrder) {
   }
   EXPECT_GT(all.back(), 1U);
   const std::uint32_t first_of_last = 18 - all.back();
-  const std::vector<std::uint32_t> of_last(all.begin() + first_of_last, all.end());
-  EXPECT_EQ(compared_from(*decoder, first_of_last), of_last);
+  const std::vector<std::uint32_t> last_counts(all.begin() + first_of_last, all.end());
+  EXPECT_EQ(compared_from(*decoder, first_of_last), last_counts);
   EXPECT_EQ(compared_from(*decoder, first_of_last + 1),
             std::vector<std::uint32_t>(all.back() - 1, 0));
-  EXPECT_EQ(compared_from(*decoder, first_of_last), of_last);  // the GOF that is loaded, again
+  EXPECT_EQ(compared_from(*decoder, first_of_last),
+            last_counts);  // the GOF that is loaded, again
 }
 
 TEST(Hashes, ThoseOfFramesCoverOneEach) {

@@ -55,12 +55,12 @@ TEST(GofSummaries, CountsTheBytesOfUnits) {
     }
     std::vector<std::size_t> found;
     std::vector<std::size_t> found_of_rigs;
-    bool of_rig = false;
+    bool is_rig = false;
     for (const UnitPlace& unit : units_of(stream)) {
-      if (unit.type != UnitType::kSlice) of_rig = unit.type == UnitType::kRig;
-      const bool of_gof = unit.type == UnitType::kGof || unit.type == UnitType::kSlice;
-      if (of_rig || of_gof) {
-        (of_rig ? found_of_rigs : found).push_back(unit.end() - unit.offset);
+      if (unit.type != UnitType::kSlice) is_rig = unit.type == UnitType::kRig;
+      const bool is_gof = unit.type == UnitType::kGof || unit.type == UnitType::kSlice;
+      if (is_rig || is_gof) {
+        (is_rig ? found_of_rigs : found).push_back(unit.end() - unit.offset);
       }
     }
     EXPECT_EQ(listed, found);

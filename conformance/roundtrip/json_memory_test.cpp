@@ -36,8 +36,8 @@ std::uint64_t estimate_of(const std::string& text) {
 
 template <class Json>
 void expect_bounded(const std::string& text) {
-  constexpr std::uint64_t kOfParser = 2000;
-  EXPECT_LE(peak_of<Json>(text), estimate_of(text) + kOfParser) << text.substr(0, 200);
+  constexpr std::uint64_t kParserBytes = 2000;
+  EXPECT_LE(peak_of<Json>(text), estimate_of(text) + kParserBytes) << text.substr(0, 200);
 }
 
 TEST(JsonMemory, IsBoundedForRandomTexts) {

@@ -62,11 +62,11 @@ std::optional<Error> decode(const StreamBytes& stream, Memory& memory,
 // Returns the least limit with which a stream is decoded: each error names the memory needed so
 // far. Lower limits must hold too: no more is allocated, apart from the decoder itself.
 Memory memory_for(const StreamBytes& stream, std::uint32_t coarse_layers = SliceCut::kAll) {
-  constexpr std::uint64_t kOfDecoder = 4096;
+  constexpr std::uint64_t kDecoderBytes = 4096;
   Memory memory;
   for (;;) {
     const auto error = decode(stream, memory, coarse_layers);
-    EXPECT_LT(memory.peak, memory.estimate + kOfDecoder);
+    EXPECT_LT(memory.peak, memory.estimate + kDecoderBytes);
     if (!error) return memory;
     EXPECT_EQ(error->code, Errc::kLimitExceeded) << error->rule << ' ' << error->element;
     EXPECT_GT(error->needed_bytes, memory.estimate);
@@ -75,11 +75,10 @@ Memory memory_for(const StreamBytes& stream, std::uint32_t coarse_layers = Slice
   }
 }
 
-void expect_within_estimate(const Plan& plan, double least_share = 0.0) {
+void expect_within_estimate(const Plan& plan, double min_share = 0.0) {
   const Memory memory = memory_for(stream_of(plan));
   // A limit that is far too high would refuse streams without need.
-  EXPECT_GT(static_cast<double>(memory.peak),
-            least_share * static_cast<double>(memory.estimate));
+  EXPECT_GT(static_cast<double>(memory.peak), min_share * static_cast<double>(memory.estimate));
 }
 
 std::vector<Triangle> tube(std::uint32_t num_vertices) {
@@ -125,14 +124,14 @@ TEST(MemoryLimit, HoldsForFrames) {
   }
 }
 
-constexpr Size kOfRig{3 * kAround, 1, 10, 50, 10};
+constexpr Size kRigSize{3 * kAround, 1, 10, 50, 10};
 
 // The limit also holds if each rig is used, and then replaced by another.
 TEST(MemoryLimit, HoldsForSharedRigs) {
   for (const std::uint32_t num_rigs : {1U, 8U}) {
     SCOPED_TRACE(num_rigs);
-    expect_within_estimate({1, Kind::kSharedRig, kOfRig, tube(kOfRig.vertices), num_rigs, 2},
-                           0.3);
+    expect_within_estimate(
+        {1, Kind::kSharedRig, kRigSize, tube(kRigSize.vertices), num_rigs, 2}, 0.3);
   }
 }
 

@@ -15,7 +15,7 @@
 namespace rlpc {
 namespace {
 
-constexpr double kMostLarger = 1.03;
+constexpr double kMaxLarger = 1.03;
 
 // Boxes that turn and move, one after the other, as objects of a scene do.
 class MovingBoxes {
@@ -110,7 +110,7 @@ TEST(MovingParts, AreFoundWithoutAskingForTheirNumber) {
     const MovingBoxes boxes(seed);
     const std::size_t chosen = bytes_of(boxes, Profile::kMain, 0);
     const std::size_t asked = bytes_of(boxes, Profile::kMain, boxes.num_boxes());
-    EXPECT_LE(static_cast<double>(chosen), kMostLarger * static_cast<double>(asked))
+    EXPECT_LE(static_cast<double>(chosen), kMaxLarger * static_cast<double>(asked))
         << "with " << boxes.num_boxes() << " bones: " << asked;
   }
 }

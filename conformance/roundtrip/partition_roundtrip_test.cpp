@@ -26,12 +26,12 @@ class Partitions : public testing::TestWithParam<PartitionMethod> {
 };
 
 void expect_met(MemoryFrames source, const EncoderSettings& settings,
-                std::uint32_t most_clusters) {
+                std::uint32_t max_clusters) {
   EncodeReport report;
   encode_to_memory(source, settings, &report);
   EXPECT_TRUE(report.target_met);
   EXPECT_GE(report.clusters, 1U);
-  EXPECT_LE(report.clusters, most_clusters);
+  EXPECT_LE(report.clusters, max_clusters);
 }
 
 // Frames of the first vertices of a tube, without triangles.

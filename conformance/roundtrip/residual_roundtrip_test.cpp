@@ -16,7 +16,7 @@ namespace {
 
 using Coded = std::vector<std::pair<std::uint32_t, std::int32_t>>;  // expected magnitude, value
 
-constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
+constexpr auto kMax = static_cast<std::int32_t>(kMaxResidual);
 
 void expect_round_trip(const Coded& list) {
   RangeEncoder re;
@@ -49,7 +49,7 @@ std::vector<std::uint32_t> expected_magnitudes() {
 std::vector<std::int32_t> extreme_values() {
   std::vector<std::int32_t> list{0};
   const auto add = [&](std::int64_t magnitude) {
-    if (magnitude <= 0 || magnitude > kMost) return;
+    if (magnitude <= 0 || magnitude > kMax) return;
     list.push_back(static_cast<std::int32_t>(magnitude));
     list.push_back(-static_cast<std::int32_t>(magnitude));
   };
@@ -71,8 +71,8 @@ TEST(Residual, EveryMagnitudeComesBackInEveryContext) {
 
 TEST(Residual, TheLargestComesBackAloneInEveryContext) {
   for (const std::uint32_t expected : expected_magnitudes()) {
-    expect_round_trip({{expected, kMost}});
-    expect_round_trip({{expected, -kMost}});
+    expect_round_trip({{expected, kMax}});
+    expect_round_trip({{expected, -kMax}});
   }
 }
 
@@ -107,12 +107,12 @@ TEST(Residual, OfAnyBytesIsNoLargerThanTheLargest) {
     ResidualModels models;
     for (const std::uint32_t expected : expected_magnitudes()) {
       const std::int32_t value = parse_residual(rd, models, expected);
-      ASSERT_LE(value, kMost);
-      ASSERT_GE(value, -kMost);
+      ASSERT_LE(value, kMax);
+      ASSERT_GE(value, -kMax);
       largest = std::max(largest, value < 0 ? -value : value);
     }
   }
-  EXPECT_EQ(largest, kMost);  // clipping did happen
+  EXPECT_EQ(largest, kMax);  // clipping did happen
 }
 
 TEST(ResidualContext, GrowsWithTheExpectedMagnitude) {

@@ -20,7 +20,7 @@ namespace rlpc {
 namespace {
 
 constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
-constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
+constexpr auto kMax = static_cast<std::int32_t>(kMaxResidual);
 
 using Payload = std::vector<std::uint8_t>;
 
@@ -152,7 +152,7 @@ TEST(SkinnedGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
       int count = 0;
       const auto jump = [&](std::int32_t& x) {
         ++count;
-        x = count / period % 2 == 0 ? 0 : count % 2 == 0 ? kMost : -kMost;
+        x = count / period % 2 == 0 ? 0 : count % 2 == 0 ? kMax : -kMax;
       };
       const auto jump_track = [&](TrackResiduals& residuals) {
         for (Vec3i& r : residuals) std::for_each(r.begin(), r.end(), jump);

@@ -76,20 +76,20 @@ std::size_t peak_of_decoding(const std::vector<std::uint8_t>& stream,
 
 TEST(Streaming, MemoryDoesNotGrowWithTheSequence) {
   // Each GOF needs an entry in the index; a growing table reserves twice the room.
-  constexpr std::size_t kOfGof = 64;
+  constexpr std::size_t kGofBytes = 64;
   std::vector<std::uint8_t> short_stream;
   std::vector<std::uint8_t> long_stream;
   const std::size_t with_400 = peak_of_encoding(400, short_stream);
   const std::size_t with_2000 = peak_of_encoding(2000, long_stream);
   // The decoder that verifies the stream has a table of its own.
-  EXPECT_LE(with_2000, with_400 + 2 * kOfGof * 160);
+  EXPECT_LE(with_2000, with_400 + 2 * kGofBytes * 160);
   EXPECT_GT(long_stream.size(), 4 * short_stream.size());
   // The frames alone are larger than the allowed growth.
-  static_assert(1600 * kVertices * 12 > 100 * kOfGof * 160);
+  static_assert(1600 * kVertices * 12 > 100 * kGofBytes * 160);
 
   const std::size_t decoded_400 = peak_of_decoding(short_stream, 400);
   const std::size_t decoded_2000 = peak_of_decoding(long_stream, 2000);
-  EXPECT_LE(decoded_2000, decoded_400 + kOfGof * 160);
+  EXPECT_LE(decoded_2000, decoded_400 + kGofBytes * 160);
   RecordProperty("encoder_bytes", static_cast<int>(with_2000));
   RecordProperty("decoder_bytes", static_cast<int>(decoded_2000));
 }

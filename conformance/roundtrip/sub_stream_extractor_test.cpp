@@ -94,8 +94,8 @@ TEST(SubStreamExtractor, KeepsClusterGofsWhole) {
   const std::vector<Frame> after = decode_all(out);
   ASSERT_EQ(after.size(), before.size());
   for (std::size_t f = 0; f < before.size(); ++f) {
-    const bool of_bones = f / 2 % 2 == 1;
-    EXPECT_EQ(before[f] != after[f], of_bones) << f;
+    const bool has_bones = f / 2 % 2 == 1;
+    EXPECT_EQ(before[f] != after[f], has_bones) << f;
   }
 }
 

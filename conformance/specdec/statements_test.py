@@ -94,11 +94,10 @@ class Statements(unittest.TestCase):
 
     def test_names_that_serve_several_kinds_of_gof(self):
         calls = self.calls()
-        of_clusters = self.set_in(self.reached(calls, {"clusters_of_gof", "DecodeGof"},
-                                               {"DecodeBones", "DecodeFrames"}))
-        of_bones = self.set_in(self.reached(calls, {"bones_of_gof", "slice_unit", "DecodeBones"}))
-        of_frames = self.set_in(self.reached(calls, {"frames_of_gof", "frame_unit",
-                                                     "DecodeFrames"}))
+        cluster = self.set_in(self.reached(calls, {"clusters_of_gof", "DecodeGof"},
+                                           {"DecodeBones", "DecodeFrames"}))
+        skinned = self.set_in(self.reached(calls, {"bones_of_gof", "slice_unit", "DecodeBones"}))
+        inter = self.set_in(self.reached(calls, {"frames_of_gof", "frame_unit", "DecodeFrames"}))
         annex = (ROOT / "spec" / "annex-e-state.md").read_text(encoding="utf-8")
         tables, stated = annex.split("## E.3")
         shared = {name for life, names in re.findall(r"^\| ([^|]+) \|.*\| ([^|]+) \|$", tables,
@@ -106,7 +105,7 @@ class Statements(unittest.TestCase):
                   if not re.match("the stream|a section|a GOF, from its last slice", life)
                   for name in names.split(", ")}
         for paragraph, several in zip(stated.split("\n\n")[1:],
-                                      (of_clusters & of_bones, of_bones & of_frames)):
+                                      (cluster & skinned, skinned & inter)):
             names = paragraph.split(" are used in ")[0].replace(" and ", ", ")
             self.assertEqual(set(re.split(r",\s+", names)), several & shared)
 

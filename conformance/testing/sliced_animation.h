@@ -188,9 +188,9 @@ class SlicedAnimation {
     trajectory.residual = track();
     return trajectory;
   }
-  std::vector<std::int32_t> vertex_residuals(std::size_t factors, std::int32_t most) {
+  std::vector<std::int32_t> vertex_residuals(std::size_t factors, std::int32_t max) {
     std::vector<std::int32_t> residuals(factors * kVertices);
-    for (std::int32_t& x : residuals) x = number(-most, most);
+    for (std::int32_t& x : residuals) x = number(-max, max);
     return residuals;
   }
 

@@ -30,8 +30,8 @@ struct Request {
 
 bool write_file(const Request& request) {
   const Size& size = request.size;
-  const std::uint32_t most = kLevels[request.level - 1].max_triangles;
-  const Plan plan{request.level, request.kind, size, make_mesh(size.vertices, most)};
+  const std::uint32_t max = kLevels[request.level - 1].max_triangles;
+  const Plan plan{request.level, request.kind, size, make_mesh(size.vertices, max)};
   std::ofstream file(request.path, std::ios::binary);
   write_stream(plan, [&](const Bytes& bytes) {
     file.write(reinterpret_cast<const char*>(bytes.data()),
@@ -53,12 +53,12 @@ bool parse(const std::string& text, std::uint32_t& value) {
 
 // Options of the command line, after LEVEL KIND OUT.
 struct Options {
-  Most most;
+  SizeLimits limits;
   std::string beyond;
 
   bool set(const std::string& name, const std::string& value) {
-    if (name == "--frames") return parse(value, most.frames);
-    if (name == "--components") return parse(value, most.components);
+    if (name == "--frames") return parse(value, limits.frames);
+    if (name == "--components") return parse(value, limits.components);
     beyond = value;
     return name == "--beyond";
   }
@@ -79,7 +79,7 @@ std::optional<Request> request_of(const std::vector<std::string>& words) {
     if (!options.set(words[i], words[i + 1])) return std::nullopt;
   }
   const Level& level = kLevels[request.level - 1];
-  request.size = hardest_size(request.kind, level, options.most);
+  request.size = hardest_size(request.kind, level, options.limits);
   if (options.beyond.empty()) return request;
   const auto beyond = size_beyond(options.beyond, level, request.size);
   if (!beyond) return std::nullopt;

@@ -34,14 +34,14 @@ struct Size {
   std::uint64_t values() const { return std::uint64_t{vertices} * frames; }
 };
 
-struct Most {
+struct SizeLimits {
   std::uint32_t frames = kMaxFrames;
   std::uint32_t components = 1U << 24;
 };
 
 // Returns the size with the most products. Vertices times frames come as close to their limit
 // as the mesh allows; of such sizes, those with many factors are preferred.
-Size hardest_size(Kind kind, const Level& level, const Most& most);
+Size hardest_size(Kind kind, const Level& level, const SizeLimits& limits);
 // Returns the number of factors that R-LVL-05 limits.
 std::uint64_t num_factors(Kind kind, const Size& size);
 // Returns a size with one more of `what` than its limit, and little of everything else; none
@@ -59,7 +59,7 @@ class Noise {
  public:
   std::int32_t residual() {
     const auto bits = static_cast<std::uint32_t>(random_());
-    const auto magnitude = static_cast<std::int32_t>(kLeast + (bits >> 9));
+    const auto magnitude = static_cast<std::int32_t>(kMin + (bits >> 9));
     return (bits & 1) != 0 ? -magnitude : magnitude;
   }
   std::vector<std::int32_t> residuals(std::size_t count);
@@ -67,7 +67,7 @@ class Noise {
   std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(random_() % n); }
 
  private:
-  static constexpr std::uint32_t kLeast = 1U << 23;
+  static constexpr std::uint32_t kMin = 1U << 23;
   std::mt19937 random_{1};
 };
 

@@ -183,9 +183,9 @@ InterSettings make_frames(const Size& size, const OrderedMesh& mesh) {
   s.pattern.kind = FramePattern::kExplicit;
   s.pattern.entries.push_back({kMaxExplicitPeriod, {0, 0}, 0});
   for (std::uint32_t offset = 1; offset < kMaxExplicitPeriod; ++offset) {
-    const std::uint32_t least = kMaxExplicitPeriod - size.components;
+    const std::uint32_t min = kMaxExplicitPeriod - size.components;
     s.pattern.entries.push_back(
-        {offset, {offset - 1, kMaxExplicitPeriod}, offset > least ? offset - least : 0});
+        {offset, {offset - 1, kMaxExplicitPeriod}, offset > min ? offset - min : 0});
   }
   s.pattern.temporal_layers = size.components;
   s.step.assign(s.pattern.num_depths(), 1);

@@ -22,9 +22,9 @@ std::optional<Size> largest_size(Kind kind, const Level& level, std::uint32_t fr
   Size size;
   size.frames = frames;
   size.bones = kind == Kind::kCluster ? 1 : level.max_clusters;
-  const std::uint64_t most =
+  const std::uint64_t max =
       std::min<std::uint64_t>(level.max_vertices, level.max_gof_values / frames);
-  size.vertices = static_cast<std::uint32_t>(most / kAround * kAround);
+  size.vertices = static_cast<std::uint32_t>(max / kAround * kAround);
   const std::uint64_t without = factors_without_components(kind, size);
   if (size.vertices < 3 * kAround || without > level.max_gof_factors) return std::nullopt;
   size.components = static_cast<std::uint32_t>(std::min<std::uint64_t>(
@@ -52,9 +52,9 @@ Size largest_frames(const Level& level, std::uint32_t frames, std::uint32_t temp
   size.frames = frames;
   size.components = temporal_layers;
   size.bones = level.max_clusters;
-  const std::uint64_t most = std::min<std::uint64_t>(
+  const std::uint64_t max = std::min<std::uint64_t>(
       level.max_learning_vertices / temporal_layers, level.max_gof_values / frames);
-  size.vertices = static_cast<std::uint32_t>(most / kAround * kAround);
+  size.vertices = static_cast<std::uint32_t>(max / kAround * kAround);
   if (size.vertices < 3 * kAround) return {};
   size.repeats =
       static_cast<std::uint32_t>(level.max_gof_factors / (std::uint64_t{3} * size.vertices));
@@ -62,11 +62,11 @@ Size largest_frames(const Level& level, std::uint32_t frames, std::uint32_t temp
 }
 
 // Returns the size with the most filters that adapt and, among these, the most vertices.
-Size hardest_frames(const Level& level, const Most& most) {
+Size hardest_frames(const Level& level, const SizeLimits& limits) {
   Size best;
   std::uint64_t highest = 0;
-  const std::uint32_t longest = std::min(most.frames, level.max_gof_frames);
-  for (std::uint32_t t = 1; t <= std::min(most.components, kMaxPatternDepths); ++t) {
+  const std::uint32_t longest = std::min(limits.frames, level.max_gof_frames);
+  for (std::uint32_t t = 1; t <= std::min(limits.components, kMaxPatternDepths); ++t) {
     for (std::uint32_t frames = 1; frames <= longest; ++frames) {
       const Size size = largest_frames(level, frames, t);
       if (size.values() * t <= highest) continue;
@@ -85,14 +85,14 @@ std::uint64_t num_factors(Kind kind, const Size& size) {
          size.components * factors_of_component(kind, size);
 }
 
-Size hardest_size(Kind kind, const Level& level, const Most& most) {
-  if (kind == Kind::kInter) return hardest_frames(level, most);
+Size hardest_size(Kind kind, const Level& level, const SizeLimits& limits) {
+  if (kind == Kind::kInter) return hardest_frames(level, limits);
   Size best;
   double highest = 0.0;
-  for (std::uint32_t frames = 1; frames <= std::min(most.frames, level.max_gof_frames);
+  for (std::uint32_t frames = 1; frames <= std::min(limits.frames, level.max_gof_frames);
        ++frames) {
     const auto size =
-        largest_size(kind, level, frames, std::min(most.components, level.max_components));
+        largest_size(kind, level, frames, std::min(limits.components, level.max_components));
     if (!size) continue;
     const double products = static_cast<double>(size->values()) * size->components;
     const double score = products * static_cast<double>(num_factors(kind, *size));

@@ -12,7 +12,7 @@ namespace rlpc {
 namespace {
 
 // Below this share of the energy, vectors are noise of the analysis.
-constexpr double kLeastEnergy = 1e-12;
+constexpr double kMinEnergy = 1e-12;
 // Halvings of the exponent of a scale: 2^-40 to 2^4, to within 2^-20.
 constexpr int kHalvings = 26;
 
@@ -31,11 +31,11 @@ double predicted(const BasisPredictor& predictor, const double* v) {
 }
 
 BasisPredictor fitted(std::span<const std::vector<double>> vectors, std::size_t order) {
-  SmallSystem<kMostPredicting + 1> system;
+  SmallSystem<kMaxPredicting + 1> system;
   for (const std::vector<double>& vector : vectors) {
     for (std::size_t j = 0; j < vector.size(); ++j) {
-      if (j % axis_length(vector) < kMostPredicting) continue;
-      std::array<double, kMostPredicting + 1> known{};  // the last one: the offset
+      if (j % axis_length(vector) < kMaxPredicting) continue;
+      std::array<double, kMaxPredicting + 1> known{};  // the last one: the offset
       for (std::size_t k = 0; k < order; ++k) known[k] = vector[j - 1 - k];
       known[order] = 1.0;
       for (std::size_t a = 0; a <= order; ++a) {
@@ -86,7 +86,7 @@ InputResult<TrajectoryBasis> analyse_trajectories(FrameSource& source,
                 out.begin());
   };
   ComponentsByRow found =
-      components_by_row({basis.num_vertices, width, write}, max_vectors, kLeastEnergy * total);
+      components_by_row({basis.num_vertices, width, write}, max_vectors, kMinEnergy * total);
   const std::size_t count = found.temporal.size();
   basis.total_energy = total;
   basis.energy.assign(found.energy.begin(),
@@ -116,7 +116,7 @@ std::vector<double> relative_steps(const TrajectoryBasis& basis, StepRule rule,
 
 std::vector<BasisPredictor> basis_predictors(std::span<const std::vector<double>> vectors) {
   std::vector<BasisPredictor> list{{"direct", {}, 0.0}};
-  for (std::size_t order = 1; order <= kMostPredicting; ++order) {
+  for (std::size_t order = 1; order <= kMaxPredicting; ++order) {
     list.push_back(fitted(vectors, order));
   }
   list.push_back({"Cob1", {1.0}, 0.0});
@@ -131,7 +131,7 @@ double missed_squares(std::span<const std::vector<double>> vectors,
   double sum = 0.0;
   for (const std::vector<double>& vector : vectors) {
     for (std::size_t j = 0; j < vector.size(); ++j) {
-      if (j % axis_length(vector) < kMostPredicting) continue;
+      if (j % axis_length(vector) < kMaxPredicting) continue;
       const double missed = vector[j] - predicted(predictor, &vector[j]);
       sum += missed * missed;
     }

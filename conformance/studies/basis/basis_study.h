@@ -44,12 +44,12 @@ struct BasisPredictor {
   double offset = 0.0;
 };
 
-inline constexpr std::size_t kMostPredicting = 4;  // number of values
+inline constexpr std::size_t kMaxPredicting = 4;  // number of values
 
 // No prediction; LPC1 to LPC4, fitted by least squares; Cob1 to Cob4, (11), (12), (14), (15).
 std::vector<BasisPredictor> basis_predictors(std::span<const std::vector<double>> vectors);
 
-// Returns the sum of squared prediction errors of values with kMostPredicting values before
+// Returns the sum of squared prediction errors of values with kMaxPredicting values before
 // them.
 double missed_squares(std::span<const std::vector<double>> vectors,
                       const BasisPredictor& predictor);

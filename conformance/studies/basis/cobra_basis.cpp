@@ -33,7 +33,7 @@ struct Options {
 nlohmann::json rules(const TrajectoryBasis& basis, const Options& options) {
   const std::size_t count = std::min(options.tripled, basis.vectors.size());
   const auto vectors = std::span(basis.vectors).first(count);
-  const BasisPredictor linear = basis_predictors(vectors).at(1 + kMostPredicting + 1);
+  const BasisPredictor linear = basis_predictors(vectors).at(1 + kMaxPredicting + 1);
   nlohmann::json list;
   for (const StepRule rule : kStepRules) {
     const std::vector<double> relative = relative_steps(basis, rule, count);
@@ -79,13 +79,13 @@ nlohmann::json predictors(const TrajectoryBasis& basis, const Options& options) 
 nlohmann::json study(const Options& options) {
   auto source = open_frame_source(options.input);
   if (!source) throw std::runtime_error(source.error().message);
-  if ((*source)->num_frames() <= kMostPredicting) {
-    throw std::runtime_error("expected at least " + std::to_string(kMostPredicting + 1) +
+  if ((*source)->num_frames() <= kMaxPredicting) {
+    throw std::runtime_error("expected at least " + std::to_string(kMaxPredicting + 1) +
                              " frames");
   }
-  std::size_t most = std::max(options.tripled, kShown);
-  for (const std::size_t count : options.counts) most = std::max(most, count);
-  const auto basis = analyse_trajectories(**source, most);
+  std::size_t max = std::max(options.tripled, kShown);
+  for (const std::size_t count : options.counts) max = std::max(max, count);
+  const auto basis = analyse_trajectories(**source, max);
   if (!basis) throw std::runtime_error(basis.error().message);
   if (basis->vectors.empty()) throw std::runtime_error("nothing moves, and nothing is apart");
   const auto shown = std::span(basis->vectors).first(std::min(kShown, basis->vectors.size()));
