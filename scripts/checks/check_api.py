@@ -93,24 +93,24 @@ def declared(text):
             yield (word if kind == "enum" else f"{name}.{word}", comment_of(body, member), own)
 
 
-def since(name, own, of_type):
+def since(name, own, type_comment):
     """Whether the comments name the version that added a name."""
     # "Names with RLPC_PROFILE_: since 1.2" is about some of the values of a type.
-    for prefix, version in _SOME.findall(of_type):
+    for prefix, version in _SOME.findall(type_comment):
         if name.startswith(prefix):
             return version
-    return _SINCE.search(_SOME.sub("", own)) or _SINCE.search(_SOME.sub("", of_type))
+    return _SINCE.search(_SOME.sub("", own)) or _SINCE.search(_SOME.sub("", type_comment))
 
 
 def check_names(root, headers, released):
     complaints, found = [], set()
     for path in headers:
         relative = path.relative_to(root).as_posix()
-        for name, own, of_type in declared(cpp_source.read(path)):
+        for name, own, type_comment in declared(cpp_source.read(path)):
             found.add(name)
-            if not own.strip() and "." not in name and not of_type:
+            if not own.strip() and "." not in name and not type_comment:
                 complaints.append(f"{relative}: {name} has no comment")
-            if bool(since(name, own, of_type)) == (name in released):
+            if bool(since(name, own, type_comment)) == (name in released):
                 complaints.append(f"{relative}: {name} " + (
                     "is in the first version of the interface" if name in released else
                     'does not say since which version it is there: "Since 1.2."'))

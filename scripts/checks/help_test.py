@@ -28,12 +28,12 @@ class Help(unittest.TestCase):
             done = subprocess.run([script, "--help"], capture_output=True, text=True, check=False,
                                   env={**os.environ, "COLUMNS": str(COLUMNS)})
             self.assertEqual((done.returncode, done.stderr), (0, ""), script)
-            most_lines, most_columns = LARGER.get(script.name, (LINES, COLUMNS))
+            max_lines, max_columns = LARGER.get(script.name, (LINES, COLUMNS))
             lines = done.stdout.splitlines()
             self.assertGreater(len(lines), 2, script)
-            self.assertLessEqual(len(lines), most_lines, script)
+            self.assertLessEqual(len(lines), max_lines, script)
             for line in lines:
-                self.assertLessEqual(len(line), most_columns, (script, line))
+                self.assertLessEqual(len(line), max_columns, (script, line))
 
     def test_wrong_usage_is_refused(self):
         for script, *arguments in (("scripts/mutate", "--jobs", "0"),

@@ -253,24 +253,24 @@ def skinned_gof_seeds(found, counts):
 def high_gof_seeds(found, _):
     if found[0][1][0] != 2:
         return
-    before, rigs, of_gof = {}, [], []
+    before, rigs, gof_units = {}, [], []
     frame = None
     for code, payload in [*found, (None, b"")]:
         before.setdefault(code, payload)
         if code == SLICE:
-            (of_gof if of_gof else rigs).append((code, payload))
+            (gof_units if gof_units else rigs).append((code, payload))
             continue
-        if of_gof and CONNECTIVITY in before:
+        if gof_units and CONNECTIVITY in before:
             pieces = [before[SEQUENCE_HEADER], before[CONNECTIVITY]]
-            pieces += [bytes([c]) + p for c, p in rigs + of_gof]
+            pieces += [bytes([c]) + p for c, p in rigs + gof_units]
             if max(map(len, pieces)) < 65536:
                 yield struct.pack("<I", frame | 1 << 31) + b"".join(
                     struct.pack("<H", len(piece)) + piece for piece in pieces)
-        of_gof = []
+        gof_units = []
         if code == RIG:
             rigs.append((code, payload))
         elif code == GOF:
-            of_gof, frame = [(code, payload)], min(Bits(payload[:16]).ue(), (1 << 31) - 1)
+            gof_units, frame = [(code, payload)], min(Bits(payload[:16]).ue(), (1 << 31) - 1)
 
 
 def payload_seeds(found, counts):

@@ -16,7 +16,7 @@ typedef struct skin {
 
 // Does what a vertex shader does; returns how far a coordinate is from a position at most.
 static double distance_to(const skin* s, const float* xyz, size_t v) {
-  double most = 0;
+  double max = 0;
   for (size_t c = 0; c < 3; ++c) {
     double at = 0;
     for (size_t k = kSlots * v; k < kSlots * (v + 1); ++k) {
@@ -26,10 +26,10 @@ static double distance_to(const skin* s, const float* xyz, size_t v) {
                      (m[c] * p[0] + m[4 + c] * p[1] + m[8 + c] * p[2] + m[12 + c]));
     }
     const double off = at - (double)xyz[3 * v + c];
-    if (off > most) most = off;
-    if (-off > most) most = -off;
+    if (off > max) max = off;
+    if (-off > max) max = -off;
   }
-  return most;
+  return max;
 }
 
 // Takes bones, weights and rest shape from the frame that has been decoded last.
@@ -51,12 +51,12 @@ static rlpc_status show(rlpc_decoder* decoder, uint32_t frame, const rlpc_frame_
   if (s->pose.skeleton != before) status = make_skin(decoder, num_vertices, s);
   if (status != RLPC_OK) return status;
   status = rlpc_decoder_bone_matrices(decoder, s->matrices, 16 * (size_t)s->pose.num_bones);
-  double most = 0;
+  double max = 0;
   for (size_t v = 0; status == RLPC_OK && v < num_vertices; ++v) {
     const double off = distance_to(s, output->positions.data, v);
-    if (off > most) most = off;
+    if (off > max) max = off;
   }
-  printf("frame %u: %u bones, skinning is off by up to %g\n", frame, s->pose.num_bones, most);
+  printf("frame %u: %u bones, skinning is off by up to %g\n", frame, s->pose.num_bones, max);
   return status;
 }
 
@@ -66,13 +66,12 @@ static rlpc_status show_between(rlpc_decoder* decoder, const rlpc_frame_output* 
   rlpc_blend_init(&blend, sizeof blend);
   blend.second_frame = 1;
   blend.weight = 0.25;
-  float least[3], most[3];
+  float min[3], max[3];
   rlpc_status status = rlpc_decoder_blend(decoder, &blend, output);
-  if (status == RLPC_OK) status = rlpc_decoder_bounds(decoder, least, most);
+  if (status == RLPC_OK) status = rlpc_decoder_bounds(decoder, min, max);
   if (status == RLPC_OK) {
-    printf("a quarter after frame 0: from %g %g %g to %g %g %g\n", (double)least[0],
-           (double)least[1], (double)least[2], (double)most[0], (double)most[1],
-           (double)most[2]);
+    printf("a quarter after frame 0: from %g %g %g to %g %g %g\n", (double)min[0],
+           (double)min[1], (double)min[2], (double)max[0], (double)max[1], (double)max[2]);
   }
   return status;
 }

@@ -34,16 +34,16 @@ static int decode(FILE* out) {
   output.normal_weight = RLPC_NORMAL_WEIGHT_ANGLE;
 
   double scale[3], offset[3];  // for the vertex shader: coordinate = value * scale + offset
-  float least[3], most[3];
+  float min[3], max[3];
   const int ok =
       rlpc_decoder_int16_scale(decoder, scale, offset) == RLPC_OK &&
       rlpc_decoder_indices(decoder, indices, index_bytes, sizeof *indices) == RLPC_OK &&
       rlpc_decoder_frame(decoder, info.num_frames / 2, &output) == RLPC_OK &&
-      rlpc_decoder_bounds(decoder, least, most) == RLPC_OK &&
+      rlpc_decoder_bounds(decoder, min, max) == RLPC_OK &&
       fwrite(indices, 1, index_bytes, out) == index_bytes &&
       fwrite(vertices, 1, vertex_bytes, out) == vertex_bytes;
   if (ok) {
-    printf("%.2f s; x %g to %g = %g * value + %g\n", info.duration_seconds, least[0], most[0],
+    printf("%.2f s; x %g to %g = %g * value + %g\n", info.duration_seconds, min[0], max[0],
            scale[0], offset[0]);
   }
   free(vertices);

@@ -154,8 +154,8 @@ def table(toolbox, sequences, tools, say):
                            for name in ("rlpc", *tools)),
                          report.number(found["rlpc"] / best)])
             say(" ".join(rows[-1]))
-    for bits, of_bits in ratios.items():
-        mean = math.exp(sum(map(math.log, of_bits)) / len(of_bits))
+    for bits, row in ratios.items():
+        mean = math.exp(sum(map(math.log, row)) / len(row))
         rows.append(["geometric mean", f"{bits}", *[""] * (2 + len(tools)), report.number(mean)])
     return report.Table("Lossless coding, bpvf",
                         ["animation", "BITS", "grid, units", "RLPC", *(TITLES[t] for t in tools),

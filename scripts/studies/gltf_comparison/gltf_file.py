@@ -106,11 +106,11 @@ def clips(path):
         used = {channel["sampler"] for channel in animation["channels"]}
         keys.append([t for s in used for t in _floats(
             document, binary, document["accessors"][animation["samplers"][s]["input"]])])
-    times = [t for of_clip in keys for t in of_clip]
+    times = [t for clip_times in keys for t in clip_times]
     milliseconds = all(_on_grid(t, 1000) and _on_grid(t, FPS, True) for t in times)
     found, first = [], 0
-    for of_clip in keys:
-        end = max(of_clip)
+    for clip_times in keys:
+        end = max(clip_times)
         last = (round if _on_grid(end, FPS, milliseconds) else math.ceil)(end * FPS)
         found.append(Clip(max(last, 1) + 1 if end > 0 else 1, first))
         first += found[-1].num_frames

@@ -115,9 +115,9 @@ for (const [number, seconds] of JSON.parse(samples)) {
   const p = new THREE.Vector3();
   for (const mesh of meshes) {
     const { count } = mesh.geometry.attributes.position;
-    const ofVertices = Array.from({ length: count }, (_, v) =>
+    const vertexTracks = Array.from({ length: count }, (_, v) =>
       mesh.getVertexPosition(v, p).applyMatrix4(mesh.matrixWorld).toArray());
-    for (const v of mesh.corners) at.push(...ofVertices[v]);
+    for (const v of mesh.corners) at.push(...vertexTracks[v]);
     if (!hasNormals) continue;
     const normalsOfVertices = Array.from({ length: count }, (_, v) =>
       worldNormal(mesh, v, p).toArray());

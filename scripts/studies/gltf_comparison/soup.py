@@ -70,20 +70,20 @@ class Grid:
 
     def __init__(self, cell):
         self.cell = cell
-        self.of_cell = collections.defaultdict(list)
+        self.cells = collections.defaultdict(list)
 
     def key(self, point):
         return tuple(math.floor(x / self.cell) for x in point)
 
     def add(self, point, value):
-        self.of_cell[self.key(point)].append(value)
+        self.cells[self.key(point)].append(value)
 
     def near(self, point, rings=1):
         """All within `rings` cells, and some beyond."""
         a, b, c = self.key(point)
         steps = range(-rings, rings + 1)
         return [value for i, j, k in itertools.product(steps, steps, steps)
-                for value in self.of_cell.get((a + i, b + j, c + k), ())]
+                for value in self.cells.get((a + i, b + j, c + k), ())]
 
 
 def _centre(soup, triangle):

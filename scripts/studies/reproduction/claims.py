@@ -40,10 +40,10 @@ def equal_rate(claim, pairs):
 
 def rate_at(runs, kg):
     """Bits at an error. None: the runs do not reach it."""
-    least, most = min(r.kg for r in runs), max(r.kg for r in runs)
-    if not least / MISSED <= kg <= most * MISSED:
+    lowest, highest = min(r.kg for r in runs), max(r.kg for r in runs)
+    if not lowest / MISSED <= kg <= highest * MISSED:
         return None
-    return arithmetic.size_at(curve(runs), min(max(kg, least), most))
+    return arithmetic.size_at(curve(runs), min(max(kg, lowest), highest))
 
 
 def ratios(runs, reference):
@@ -57,9 +57,9 @@ def every_error(claim, runs, reference, limit=1.0):
     found = ratios(runs, reference)
     if not found:
         return counted(claim, 0, 0)
-    least, most = (percent(f(r for _, r in found), 1) for f in (min, max))
+    lowest, highest = (percent(f(r for _, r in found), 1) for f in (min, max))
     return counted(claim, sum(r < limit for _, r in found), len(found),
-                   f"{least} to {most} bits at equal error")
+                   f"{lowest} to {highest} bits at equal error")
 
 
 def at_published_errors(claim, runs, points):

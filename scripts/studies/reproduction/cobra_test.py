@@ -109,13 +109,13 @@ class Measured(Reproduced):
 
     def test_errors_are_those_of_the_algorithm(self):
         study = self.study("--tripled", 1, "--kg", 0.4, "--vectors", 1)
-        for of_rule in study["rules"]:
-            self.assertEqual(of_rule["predictor"], "Cob2")
-            step, = of_rule["steps"]
-            self.assertAlmostEqual(of_rule["kg"], self.error_of_first(study, step), 6)
-            self.assertAlmostEqual(of_rule["tripled_kg"][0],
+        for rule in study["rules"]:
+            self.assertEqual(rule["predictor"], "Cob2")
+            step, = rule["steps"]
+            self.assertAlmostEqual(rule["kg"], self.error_of_first(study, step), 6)
+            self.assertAlmostEqual(rule["tripled_kg"][0],
                                    self.error_of_first(study, 3 * step), 6)
-            self.assertAlmostEqual(of_rule["kg"], 0.4, 1)
+            self.assertAlmostEqual(rule["kg"], 0.4, 1)
 
     def test_bad_input(self):
         done = subprocess.run([Tools.folder / "cobra_basis", "nowhere.obj"], capture_output=True,

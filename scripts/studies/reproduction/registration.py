@@ -150,8 +150,8 @@ class Reproduction(paper.Paper):
 
     def gain(self, method):
         """Over k-way, as a ratio."""
-        found, of_kway = self.ratio(method), self.ratio("k-way")
-        return found / of_kway if found and of_kway else None
+        found, kway_ratio = self.ratio(method), self.ratio("k-way")
+        return found / kway_ratio if found and kway_ratio else None
 
     def clustering_table(self):
         """Table 1. Returns it, and our seconds."""
@@ -163,12 +163,12 @@ class Reproduction(paper.Paper):
         without = self.near[NO_PATCHES][0].encode_seconds
         for name in CLUSTERINGS:
             more[name] = max(seconds[name] - seconds[NO_PATCHES], 0.0)
-            of_all = max(self.near[name][0].encode_seconds - without, 0.0)
+            whole_seconds = max(self.near[name][0].encode_seconds - without, 0.0)
             row = known.get(name)
             rows.append([name, *([str(row.clusters), f"{row.seconds:g}"] if row
                                  else [report.NOTHING] * 2),
                          str(self.details[name].num_patches), f"{more[name]:.3f}",
-                         f"{of_all:.2f}"])
+                         f"{whole_seconds:.2f}"])
         head = ["clustering", "clusters, published", "s, published", "clusters", "s of clustering",
                 "s, all frames"]
         return report.Table("Table 1: clusters and the time of clustering", head, rows), more

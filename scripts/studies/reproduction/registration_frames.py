@@ -89,11 +89,11 @@ def csv_rows(details):
     """Head and rows of a CSV of all frames. details: by clustering."""
     head, columns, frames = ["frame"], [], set()
     for name, detail in details.items():
-        of_name = {**{f"type_{i + 1}": dict(detail.types(i)) for i in range(len(TYPES))},
-                   "ratio": dict(detail.ratios()), "ramanathan_psnr_db": dict(detail.psnr())}
-        head += [f"{name}_{what}" for what in of_name]
-        columns += of_name.values()
-        frames.update(of_name["ratio"])
+        detail_types = {**{f"type_{i + 1}": dict(detail.types(i)) for i in range(len(TYPES))},
+                        "ratio": dict(detail.ratios()), "ramanathan_psnr_db": dict(detail.psnr())}
+        head += [f"{name}_{what}" for what in detail_types]
+        columns += detail_types.values()
+        frames.update(detail_types["ratio"])
     return head, [[frame, *(column.get(frame, "") for column in columns)]
                   for frame in sorted(frames)]
 

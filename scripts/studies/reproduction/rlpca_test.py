@@ -174,8 +174,8 @@ class SmallRun(Reproduced):
         for row in rows:
             self.assertEqual(set(row[3:first]), {"-"})
             self.assertNotIn("-", row[first:])
-            kg, of_frames = (float(row[i]) for i in (first + 1, first + 2))
-            self.assertAlmostEqual(of_frames / kg, self.norm(), delta=0.02)
+            kg, kg_per_frame = (float(row[i]) for i in (first + 1, first + 2))
+            self.assertAlmostEqual(kg_per_frame / kg, self.norm(), delta=0.02)
         text = (self.out / "table.md").read_text(encoding="utf-8")
         published_rows = [line for line in text.splitlines()
                           if line.startswith(("| cow", "| chicken", "| dolphin"))]

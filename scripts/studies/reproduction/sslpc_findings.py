@@ -27,13 +27,13 @@ def against_published(layers, theirs):
               f"has {theirs[0]}.")
 
 
-def large_errors(name, least, runs, flat, large):
+def large_errors(name, min_gain, runs, flat, large):
     """The gain over a flat coder, in per cent, at errors above `large`."""
     found = [(kg, 1 / ratio) for kg, ratio in claims.ratios(flat, runs) if kg >= large]
     more = ", ".join(f"KG {kg:.2g} %: {claims.percent(ratio)}" for kg, ratio in found)
-    return claims.counted(f"at KG errors above {large:g} %, {name} takes over {least} % "
+    return claims.counted(f"at KG errors above {large:g} %, {name} takes over {min_gain} % "
                           f"fewer bits than a flat predictive coder, here {FLAT}",
-                          sum(ratio < 1 - least / 100 for _, ratio in found), len(found), more)
+                          sum(ratio < 1 - min_gain / 100 for _, ratio in found), len(found), more)
 
 
 def grows(claim, better, worse):
@@ -62,10 +62,11 @@ def headers(made):
     one, many = (made.bench.info(made.settings("SSLPC", made.lossless, more))
                  for more in ((), ["--layer-groups", made.num_layers]))
     name = "unit headers and CRCs"
-    extra, of_headers = (8 * (many["bytes"] - one["bytes"]), many["bits"][name] - one["bits"][name])
+    extra = 8 * (many["bytes"] - one["bytes"])
+    header_bits = many["bits"][name] - one["bits"][name]
     share = extra / 8 / one["bytes"]
     return (f"{made.num_layers} spatial layers take {100 * share:.1f} % more bits at KG error "
-            f"{made.lossless} %, {100 * of_headers / extra:.0f} % of them in {name}.")
+            f"{made.lossless} %, {100 * header_bits / extra:.0f} % of them in {name}.")
 
 
 def _ours(curves):

@@ -32,8 +32,8 @@ def depths(num_frames, period):
 
 def frames_of(num_frames, layers):
     """[layers kept - 1]: the frames that are left."""
-    most = PERIOD.bit_length()  # depths
-    layer = [max(0, depth - most + layers) for depth in depths(num_frames, PERIOD)]
+    max_depths = PERIOD.bit_length()  # depths
+    layer = [max(0, depth - max_depths + layers) for depth in depths(num_frames, PERIOD)]
     return [[f for f in range(num_frames) if layer[f] < kept] for kept in range(1, layers + 1)]
 
 

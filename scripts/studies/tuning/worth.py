@@ -168,8 +168,8 @@ def measure(encoder, cases, constants, common, say):
         for i, column in enumerate(columns):
             results = found[i * count:(i + 1) * count]
             same = all(r.bytes == b.bytes and r.error == b.error for r, b in zip(results, base))
-            of_bytes, of_time = change(results, base, slopes, targets)
-            row[column] = (None if same else of_bytes, of_time)
+            byte_change, time_change = change(results, base, slopes, targets)
+            row[column] = (None if same else byte_change, time_change)
         say(constant, row)
     return table
 
@@ -177,9 +177,9 @@ def measure(encoder, cases, constants, common, say):
 def _cell(entry):
     if entry is None:
         return ""
-    of_bytes, of_time = entry
-    size = "=" if of_bytes is None else f"{100 * of_bytes:+.2f}"
-    return f"{size} / {100 * of_time:+.0f}"
+    byte_change, time_change = entry
+    size = "=" if byte_change is None else f"{100 * byte_change:+.2f}"
+    return f"{size} / {100 * time_change:+.0f}"
 
 
 def markdown(constants, tables):
