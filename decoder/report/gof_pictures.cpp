@@ -168,10 +168,10 @@ std::vector<GofPicture> gof_pictures(const PicturedFrame& frame, std::uint32_t m
   if (groups.kind != GroupKind::kNone) {
     const CoarseMesh whole = frame.meshes->mesh(frame.meshes->num_layers());
     const std::vector<Colour> colours =
-        group_colours(groups.num_groups, groups.of_vertex, whole.triangles);
+        group_colours(groups.num_groups, groups.group_of_vertex, whole.triangles);
     const Noun noun = noun_of(groups.kind);
     all.push_back(pictures.of(noun.many, noun.one, title_of(groups),
-                              {groups.of_vertex, colours, groups.seeds}));
+                              {groups.group_of_vertex, colours, groups.seeds}));
     all.back().notes.insert(all.back().notes.begin(), frames_text(frame) + ".");
   }
   const auto layer_of_vertex = frame.meshes->layer_of_vertex();

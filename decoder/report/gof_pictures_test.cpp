@@ -24,7 +24,7 @@ class GofPictures : public testing::Test {
     for (std::uint32_t v = 0; v < kVertices; ++v) {
       for (const std::uint32_t x : {v / 4, v % 4, v % 3})
         frame_.xyz.push_back(static_cast<float>(x));
-      frame_.groups.of_vertex.push_back(v < 300 ? 0 : 1);
+      frame_.groups.group_of_vertex.push_back(v < 300 ? 0 : 1);
     }
     frame_.groups.kind = GroupKind::kClusters;
     frame_.groups.num_groups = 2;
@@ -119,7 +119,7 @@ TEST_F(GofPictures, OfMeshesThatAreLargerStillShowVertices) {
 
 TEST_F(GofPictures, HaveLegendsOfALimitedLength) {
   frame_.groups.num_groups = 800;
-  std::iota(frame_.groups.of_vertex.begin(), frame_.groups.of_vertex.end(), 0U);
+  std::iota(frame_.groups.group_of_vertex.begin(), frame_.groups.group_of_vertex.end(), 0U);
   const auto all = gof_pictures(frame_, 10000);
   EXPECT_EQ(count(all[0].body, "<rect"), 60U);
   EXPECT_EQ(count(all[0].body, ">and 740 more</text>"), 1U);

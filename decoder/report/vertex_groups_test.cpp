@@ -23,7 +23,7 @@ TEST(VertexGroups, SeedVerticesAreInTheFirstClusterOfTheirs) {
   EXPECT_EQ(groups.first_frame, 20U);
   EXPECT_EQ(groups.num_frames, 5U);
   EXPECT_EQ(groups.num_groups, 3U);
-  EXPECT_EQ(groups.of_vertex, (Groups{0, 2, 1, 1, 1, 2, 2, 1}));
+  EXPECT_EQ(groups.group_of_vertex, (Groups{0, 2, 1, 1, 1, 2, 2, 1}));
   ASSERT_EQ(groups.seeds.size(), 2U);
   EXPECT_EQ(groups.seeds[0], gof.clusters[1].seed_vertex);
   EXPECT_EQ(groups.seeds[1], gof.clusters[2].seed_vertex);
@@ -53,7 +53,7 @@ class Bones : public testing::Test {
     EXPECT_EQ(groups.kind, GroupKind::kBones);
     EXPECT_EQ(groups.num_groups, 4U);
     EXPECT_TRUE(groups.seeds.empty());
-    return groups.of_vertex;
+    return groups.group_of_vertex;
   }
 
   StreamContext context_;
@@ -81,7 +81,7 @@ TEST(VertexGroups, PatchesOfAGofOfFrames) {
   const VertexGroups groups = vertex_groups(access_unit, StreamContext());
   EXPECT_EQ(groups.kind, GroupKind::kPatches);
   EXPECT_EQ(groups.num_groups, 3U);
-  EXPECT_EQ(groups.of_vertex, (Groups{0, 2, 1, 2}));
+  EXPECT_EQ(groups.group_of_vertex, (Groups{0, 2, 1, 2}));
   EXPECT_TRUE(groups.seeds.empty());
 }
 
@@ -90,7 +90,7 @@ TEST(VertexGroups, GofsOfFramesWithoutPatchesHaveNone) {
   access_unit.gof = InterGof();
   const VertexGroups groups = vertex_groups(access_unit, StreamContext());
   EXPECT_EQ(groups.kind, GroupKind::kNone);
-  EXPECT_TRUE(groups.of_vertex.empty());
+  EXPECT_TRUE(groups.group_of_vertex.empty());
 }
 
 }  // namespace

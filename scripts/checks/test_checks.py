@@ -12,6 +12,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import check_clauses
 import check_headers_first
 import check_labels
+import check_names
 import check_pages
 import check_rules
 import check_stability
@@ -127,6 +128,28 @@ class Types(TreeTest):
 
     def test_a_tree_without_any_is_not_the_project(self):
         self.assert_one(check_types.check, {"common/a.h": "int a();\n"}, "no header")
+
+
+class Names(TreeTest):
+    def test_names_that_are_the_rest_of_a_sentence(self):
+        for name in ("of_frame", "most", "least_", "most_bytes", "kMostBytes", "kLeast", "kOfGof"):
+            self.assert_one(check_names.check, {"decoder/a.cpp": f"// It.\nint {name} = 1;\n"},
+                            f"decoder/a.cpp:2: {name} is")
+        self.assert_one(check_names.check, {"decoder/web/a.js": "const mostBytes = 1;\n"},
+                        "decoder/web/a.js:1: mostBytes")
+        for name in ("of_frame", "most", "LEAST_GAIN"):
+            self.assert_one(check_names.check, {"scripts/a.py": f"\n{name} = 1\n"},
+                            f"scripts/a.py:2: {name}")
+
+    def test_words_of_texts_and_names_that_are_kept(self):
+        self.assert_clean(check_names.check, {
+            "encoder/a.cpp": '// At most, the least of all.\nint x = format.least_level;\n'
+                             'const char* s = "at most";\nint kOff = almost_of(offset);\n',
+            "decoder/codec/parse/a.cpp": "int of_frame;\n",
+            "scripts/a.py": '"""At most."""\nx = "most"  # most\n'})
+
+    def test_a_tree_without_sources_is_not_the_project(self):
+        self.assert_one(check_names.check, {}, "sees nothing")
 
 
 class Labels(unittest.TestCase):

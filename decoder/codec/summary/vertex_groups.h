@@ -17,7 +17,7 @@ struct VertexGroups {
   std::uint32_t num_groups = 0;
   // [num_vertices], in decoded order: the first cluster that a seed vertex seeds; the first
   // bone with the greatest weight.
-  Vector<std::uint32_t> of_vertex;
+  Vector<std::uint32_t> group_of_vertex;
   // Vertices of the seed triangles of clusters that have one, in the order of clusters.
   Vector<std::array<std::uint32_t, 3>> seeds;
 };

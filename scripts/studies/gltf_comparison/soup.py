@@ -18,7 +18,7 @@ UV_STEP = 1 / 4096
 COINCIDENT = 1e-9
 # RMS distances of triangles that differ by less, in diagonals, do not tell them apart.
 EQUAL = 1e-4
-MOST_CANDIDATES = 8
+MAX_CANDIDATES = 8
 
 
 @dataclasses.dataclass
@@ -153,9 +153,9 @@ def match(source, other):
         first = sorted((_squares(source, own, other, _turned(t, turn), [0]), t, turn)
                        for t in near for turn in range(3))
         ranked = [(_squares(source, own, other, _turned(t, turn), everything), t, turn)
-                  for _, t, turn in first[:MOST_CANDIDATES]]
-        most = 1.1 * math.sqrt(min(ranked)[0]) + EQUAL * size * math.sqrt(3 * len(everything))
-        equal = [_turned(t, turn) for squares, t, turn in ranked if math.sqrt(squares) <= most]
+                  for _, t, turn in first[:MAX_CANDIDATES]]
+        farthest = 1.1 * math.sqrt(min(ranked)[0]) + EQUAL * size * math.sqrt(3 * len(everything))
+        equal = [_turned(t, turn) for squares, t, turn in ranked if math.sqrt(squares) <= farthest]
         chosen = min(equal, key=lambda turned: _surface_distance(source, own, other, turned))
         found[3 * triangle:3 * triangle + 3] = array.array("q", chosen)
         if len(equal) > 1:

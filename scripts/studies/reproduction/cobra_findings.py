@@ -118,7 +118,7 @@ def parts(streams, near):
                        f"{100 * near.connectivity / near.run.bpvf:.1f} %"),
         f"Coded directly, the basis takes {100 * near.other_basis['direct'] / total:.0f} % at KG "
         f"error {near.run.kg:.2g} %, NB = {near.vectors}; in the paper, up to "
-        f"{100 * published.MOST_BASIS:.0f} %. With COBRA, it takes "
+        f"{100 * published.MAX_BASIS:.0f} %. With COBRA, it takes "
         f"{100 * near.basis / near.run.bpvf:.0f} %."]
 
 
@@ -127,14 +127,14 @@ def total_saved(curves, share):
     of animations in which it takes half at most; of more, more can be saved."""
     claim = (f"COBRA takes about {100 * published.TOTAL_SAVED:.0f} % fewer bits of everything than "
              f"a basis of {published.DIRECT_BITS} bits per value")
-    if share <= published.MOST_BASIS:
+    if share <= published.MAX_BASIS:
         return claims.every_error(f"{claim}, or still fewer", curves["cobra"], curves["direct"],
                                   1 - published.TOTAL_SAVED)
     found = [ratio for _, ratio in claims.ratios(curves["cobra"], curves["direct"])]
     more = (f"; here {claims.percent(min(found))} to {claims.percent(max(found))} bits"
             if found else "")
     return (f"Not comparable: {claim} (that basis takes {100 * share:.0f} % of everything here, in "
-            f"the paper {100 * published.MOST_BASIS:.0f} % at most{more}).")
+            f"the paper {100 * published.MAX_BASIS:.0f} % at most{more}).")
 
 
 def whole(curves, share):
@@ -145,7 +145,7 @@ def whole(curves, share):
     gains = [1 - ratio for _, ratio in claims.ratios(curves["cobra"], curves["direct"])]
     if gains:
         items.append(f"COBRA saves up to {100 * max(gains):.0f} % of everything; in the paper, up "
-                     f"to more than {100 * published.MOST_SAVED:.0f} %.")
+                     f"to more than {100 * published.MAX_SAVED:.0f} %.")
     for name in ("Main", "High"):
         rate = arithmetic.bd_rate(claims.curve(curves[name]), claims.curve(curves["cobra"]))
         if rate is not None:

@@ -40,7 +40,7 @@ COW_NOTE = (
     "rate; L = 10 is what the rates of both methods fit.")
 QUICK_SETTINGS = ((30, 20), (30, 10), (10, 10))  # for the cow
 FRAMES_SETTING = (10, 10)  # N, L of figure 6 (a)
-MOST_COMPONENTS = 64  # in a search for a rate
+MAX_COMPONENTS = 64  # in a search for a rate
 
 
 PUBLISHED_HEAD = ("CPCA bpvf", "KG, %", "enc, s", "t_FPS", "RLPCA bpvf", "KG, %", "enc, s",
@@ -78,7 +78,7 @@ class Reproduction(paper.Paper):
 
     def at_rate(self, method, clusters, bpvf):
         """The run whose rate is nearest, of those with any number of components."""
-        low, high = 1, min(MOST_COMPONENTS, self.sequence.num_frames)
+        low, high = 1, min(MAX_COMPONENTS, self.sequence.num_frames)
         while high - low > 1:
             middle = (low + high) // 2
             if self.run(method, clusters, middle).bpvf < bpvf:

@@ -29,14 +29,14 @@ TARGETS = (1, 0.7, 0.5, 0.3, 0.2, 0.15, 0.1, 0.07, 0.05)
 FLAT_BITS_OF_CHICKEN = (9, 10, 11, 12, 13, 14)
 FLAT_BITS = (7, 8, 9, 10, 11, 12)
 FLAT_COLOUR = "#009e73"
-MOST_LAYERS = 255  # each layer a group: more than there are
+MAX_LAYERS = 255  # each layer a group: more than there are
 
 
 def scalable_of(num_layers):
     """Scalability: name, method, options."""
     return {
         f"SSLPC, {num_layers} spatial layers": ("SSLPC", ["--layer-groups", num_layers]),
-        "SSLPC, all spatial layers": ("SSLPC", ["--layer-groups", MOST_LAYERS]),
+        "SSLPC, all spatial layers": ("SSLPC", ["--layer-groups", MAX_LAYERS]),
         "STSLPC, 2 temporal layers": ("STSLPC", ["--temporal-layers", 2]),
         f"STSLPC, 2 temporal and {num_layers} spatial layers":
             ("STSLPC", ["--temporal-layers", 2, "--layer-groups", num_layers]),

@@ -50,11 +50,12 @@ void ClusterDecoder::add_groups(const ClusterGof& gof, const StreamContext&,
                                 VertexGroups& groups) {
   groups.kind = GroupKind::kClusters;
   groups.num_groups = static_cast<std::uint32_t>(gof.clusters.size());
-  groups.of_vertex.assign(gof.cluster_of_vertex.begin(), gof.cluster_of_vertex.end());
+  groups.group_of_vertex.assign(gof.cluster_of_vertex.begin(), gof.cluster_of_vertex.end());
   for (std::size_t i = gof.clusters.size(); i-- > 0;) {  // the first cluster last
     if (!gof.clusters[i].lcf_flag) continue;
     const auto& seed = gof.clusters[i].seed_vertex;
-    for (const std::uint32_t v : seed) groups.of_vertex[v] = static_cast<std::uint32_t>(i);
+    for (const std::uint32_t v : seed)
+      groups.group_of_vertex[v] = static_cast<std::uint32_t>(i);
     groups.seeds.push_back(seed);
   }
   std::reverse(groups.seeds.begin(), groups.seeds.end());

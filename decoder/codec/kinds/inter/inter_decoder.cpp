@@ -55,7 +55,7 @@ void InterDecoder::add_groups(const InterGof& gof, const StreamContext&, VertexG
   if (gof.num_patches == 0) return;
   groups.kind = GroupKind::kPatches;
   groups.num_groups = gof.num_patches;
-  groups.of_vertex.assign(gof.patch_of_vertex.begin(), gof.patch_of_vertex.end());
+  groups.group_of_vertex.assign(gof.patch_of_vertex.begin(), gof.patch_of_vertex.end());
 }
 
 }  // namespace rlpc

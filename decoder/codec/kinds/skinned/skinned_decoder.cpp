@@ -64,7 +64,7 @@ void SkinnedDecoder::add_groups(const SkinnedGof& gof, const StreamContext& cont
           influence.weight == greatest.weight && influence.bone < greatest.bone;
       if (influence.weight > greatest.weight || is_before) greatest = influence;
     }
-    groups.of_vertex.push_back(greatest.bone);
+    groups.group_of_vertex.push_back(greatest.bone);
   }
 }
 
