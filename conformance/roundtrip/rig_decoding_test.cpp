@@ -41,6 +41,27 @@ std::string seek_to(Decoder& decoder, std::uint32_t f, Frame& frame) {
   return more ? "" : more.error().rule;
 }
 
+// A unit that would be a legal rig is refused, also by threads that read ahead.
+TEST(RigDecoding, BaselineStreamsHaveNoRigs) {
+  StreamBytes stream = rich_stream();
+  Bytes payload{0x10, 0x0C};  // prediction_idc 0, all other elements of rig_header( ) 0
+  payload.resize(22);
+  const Bytes rig = write_unit(UnitType::kRig, payload);
+  const UnitPlace gof = units_of_type(stream, UnitType::kGof).at(1);
+  stream.insert(stream.begin() + static_cast<std::ptrdiff_t>(gof.offset), rig.begin(),
+                rig.end());
+  for (const std::uint32_t threads : {1U, 2U, 3U}) {
+    auto decoder = Decoder::open(memory_source(stream), with_threads(threads));
+    ASSERT_TRUE(decoder);
+    Frame frame(3 * std::size_t{decoder->header().num_vertices});
+    std::string rule;
+    for (int f = 0; f < 6 && rule.empty(); ++f) {
+      if (const auto more = decoder->next_frame(frame); !more) rule = more.error().rule;
+    }
+    EXPECT_EQ(rule, "R-UNT-04") << threads;
+  }
+}
+
 // Seeks backwards, over rigs that are replaced; and to each frame first of all.
 TEST(RigSeeking, FindsEveryFrame) {
   const std::vector<Frame> expected = decode_all(rig_stream());

@@ -153,6 +153,7 @@ std::optional<RawAccessUnit> AccessUnitReader::collect(const UnitHeader& gof_uni
 
 std::optional<Vector<RawUnit>> AccessUnitReader::collect_rig(const UnitHeader& rig_unit,
                                                              std::uint64_t max_memory_bytes) {
+  if (!context_.meshes) return std::nullopt;
   return collect_units(rig_unit, max_memory_bytes, [](const RawUnit&) {
     return std::optional<Followers>(kFollowersOfRig);
   });

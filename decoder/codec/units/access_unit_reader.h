@@ -79,7 +79,7 @@ class AccessUnitReader {
   // cut: a copy that set_cut() does not change.
   Result<AccessUnit> parse(const RawAccessUnit& raw, const RigSlots& rigs, const SliceCut& cut,
                            std::uint64_t max_memory_bytes) const;
-  // Read a shared rig in the same two steps.
+  // Read a shared rig in the same two steps. The first returns none in streams without rigs.
   std::optional<Vector<RawUnit>> collect_rig(const UnitHeader& rig_unit,
                                              std::uint64_t max_memory_bytes);
   Result<ParsedRig> parse_rig(const Vector<RawUnit>& raw, const RigSlots& rigs,
