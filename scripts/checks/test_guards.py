@@ -20,6 +20,7 @@ import check_headers_first
 import check_json
 import check_layers
 import check_rules
+import check_web
 import cpp_source
 import rooms
 
@@ -292,6 +293,27 @@ class Float(RealTree):
         with self.without("decoder/codec"):
             found = check_float.check(self.root)[0]
         self.assertEqual(found, ["decoder/codec/ has no sources"])
+
+
+class Web(RealTree):
+    def test_the_tree_is_clean(self):
+        self.assertEqual(check_web.check(self.root)[0], [])
+
+    def test_algorithms_of_ranges_are_found(self):
+        for name in ("common/codec/mesh/topology.cpp", "decoder/codec/units/stream_reader.cpp",
+                     "decoder/codec/kinds/inter/parse/parse_inter_gof.cpp",
+                     "decoder/web/wasm/script_source.h"):
+            for line in ("auto f = std::ranges::fill;", "#include <ranges>"):
+                with self.subTest(name=name, line=line):
+                    self.complaint(check_web.check, name,
+                                   lambda text, line=line: line + "\n" + text, f"{name}:1",
+                                   "not in the library of Emscripten")
+
+    def test_programs_and_tests_are_free(self):
+        line = "auto f = std::ranges::fill;\n"
+        for name in ("common/codec/mesh/topology_test.cpp", "decoder/meshes/mesh_sink.cpp"):
+            with self.subTest(name=name), self.planted(name, lambda text: line + text):
+                self.assertEqual(check_web.check(self.root)[0], [])
 
 
 class HeadersFirst(RealTree):

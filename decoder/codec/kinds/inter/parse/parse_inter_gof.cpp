@@ -99,7 +99,8 @@ void InterGofParser::end_gof(BitReader& r, std::uint32_t num_frames,
       gof_.num_frames = num_frames;
       order_ = std::move(order);
       frames_.resize(num_frames);
-      for (Vector<std::uint32_t>& places : first_lacking_) std::ranges::fill(places, 0U);
+      for (Vector<std::uint32_t>& places : first_lacking_)
+        std::fill(places.begin(), places.end(), 0U);
       return;
     }
   }
