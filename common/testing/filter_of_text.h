@@ -38,7 +38,7 @@ struct FilterOfText {
     }
   }
 
-  static std::int64_t most_of(const List& list) {
+  static std::int64_t max_magnitude(const List& list) {
     std::int64_t max = 1;
     for (const std::int64_t x : list) max = std::max(max, std::abs(x));
     return max;
@@ -61,7 +61,8 @@ struct FilterOfText {
     const int bits = is_of_frames ? 11 : 7;
     const std::int64_t max_error = is_of_frames ? 16384 : 1024;
     const std::int64_t max_spread = is_of_frames ? 1 << 26 : (1 << 22) - 1;
-    const int shift = std::max(floor_log2(static_cast<std::uint64_t>(most_of(offsets))) - 9, 0);
+    const int shift =
+        std::max(floor_log2(static_cast<std::uint64_t>(max_magnitude(offsets))) - 9, 0);
     error = clip3(-max_error, max_error, round2(error, shift));
     List shifted(n);
     for (std::size_t i = 0; i < n; ++i) shifted[i] = round2(offsets[i], shift);
@@ -78,11 +79,12 @@ struct FilterOfText {
       gain[i] = round2(sum, bits);
       scale += gain[i] * shifted[i];
     }
-    ASSERT_LT(most_of(gain), std::int64_t{1} << 30);
+    ASSERT_LT(max_magnitude(gain), std::int64_t{1} << 30);
     scale = std::max(scale, noise);
     scale += (scale - noise) >> 10;
     ASSERT_LT(scale, std::int64_t{1} << 46);
-    const int narrow = std::max(floor_log2(static_cast<std::uint64_t>(most_of(gain))) - 13, 0);
+    const int narrow =
+        std::max(floor_log2(static_cast<std::uint64_t>(max_magnitude(gain))) - 13, 0);
     const int exponent = floor_log2(static_cast<std::uint64_t>(scale)) - 14;
     const std::int64_t inverse = (1 << 29) / (scale >> exponent);
     ASSERT_LE(inverse, 1 << 15);
@@ -91,8 +93,8 @@ struct FilterOfText {
       gain[i] = round2(gain[i], narrow);
       change[i] = round2(gain[i] * inverse, 15);
     }
-    ASSERT_LE(most_of(gain), 1 << 14);
-    ASSERT_LE(most_of(change), 1 << 14);
+    ASSERT_LE(max_magnitude(gain), 1 << 14);
+    ASSERT_LE(max_magnitude(change), 1 << 14);
     const int weighting = std::clamp(exponent - narrow - 2, 0, 31);
     const int spreading = std::clamp(15 - bits + exponent - 2 * narrow, 1, 31);
     for (std::size_t i = 0; i < n; ++i) {

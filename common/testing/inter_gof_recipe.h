@@ -31,7 +31,7 @@ struct FramePatternRecipe {
   static FramePatternRecipe dyadic(std::uint32_t period_log2, std::uint32_t layers_minus1) {
     return {2, period_log2, {}, layers_minus1};
   }
-  static FramePatternRecipe of_entries(
+  static FramePatternRecipe from_entries(
       std::vector<PatternEntryRecipe> list,
       std::optional<std::uint32_t> layers_minus1 = std::nullopt) {
     return {3, 1, std::move(list), layers_minus1};

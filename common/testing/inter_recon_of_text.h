@@ -213,7 +213,7 @@ class InterReconOfText {
       for (const std::uint32_t u : mesh_.ring(v))
         offsets[c].push_back(decoded[0][at(u, c)] - mean);
       for (const std::uint32_t u : near_[v]) offsets[c].push_back(decoded[0][at(u, c)] - mean);
-      largest = std::max({largest, std::abs(own[c]), FilterOfText::most_of(offsets[c])});
+      largest = std::max({largest, std::abs(own[c]), FilterOfText::max_magnitude(offsets[c])});
     }
     const int shift = floor_log2(static_cast<std::uint64_t>(largest)) - 9;
     for (std::size_t c = 0; c < 3; ++c) {

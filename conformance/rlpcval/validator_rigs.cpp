@@ -12,9 +12,9 @@
 namespace rlpc {
 
 RigSlots slots_of(const SeenRigs& rigs) {
-  RigSlots slots;
-  for (std::size_t m = 0; m < rigs.size(); ++m) slots.of_idx[m] = rigs[m].rig;
-  return slots;
+  RigSlots known;
+  for (std::size_t m = 0; m < rigs.size(); ++m) known.slots[m] = rigs[m].rig;
+  return known;
 }
 
 // Records what is known of a shared rig before reading it.

@@ -190,16 +190,15 @@ TEST(StreamRigs, KeepsThoseAliveAtTheGof) {
       const auto unit = reader.find_gof();
       ASSERT_TRUE(unit && *unit);
       ASSERT_TRUE(reader.read(**unit));
-      const auto slots = reader.rigs().at(gof.offset);
-      ASSERT_TRUE(slots);
-      for (const auto& rig : slots->of_idx) {
+      const auto rigs = reader.rigs().at(gof.offset);
+      ASSERT_TRUE(rigs);
+      for (const auto& rig : rigs->slots) {
         const bool known = std::any_of(seen.begin(), seen.end(),
                                        [&](const auto& w) { return w.lock() == rig; });
         if (rig && !known) seen.emplace_back(rig);
       }
-      alive.push_back(
-          static_cast<std::size_t>(std::count_if(slots->of_idx.begin(), slots->of_idx.end(),
-                                                 [](const auto& m) { return m != nullptr; })));
+      alive.push_back(static_cast<std::size_t>(std::count_if(
+          rigs->slots.begin(), rigs->slots.end(), [](const auto& m) { return m != nullptr; })));
     }
     EXPECT_EQ(alive, (std::vector<std::size_t>{1, 2, 2, 2, 2, 2, 2, 2}));
     ASSERT_EQ(seen.size(), 3U);

@@ -83,7 +83,7 @@ SkinnedGofPayloads payloads_of_tracks(const SplitSkinnedGof& from) {
 }
 RigSlots slots_with(const SplitSkinnedGof& from) {
   RigSlots rigs;
-  rigs.of_idx[from.rig_idx] = from.rig;
+  rigs.slots[from.rig_idx] = from.rig;
   return rigs;
 }
 

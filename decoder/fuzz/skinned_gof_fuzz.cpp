@@ -106,7 +106,7 @@ class Units {
     const auto rig = parser_.finish_rig();
     const rlpc::OrderedMesh& mesh = meshes_[rig->prediction];
     check_influences(*rig, rlpc::complete_influences(mesh, *rig));
-    rigs_.of_idx[idx] = rig;
+    rigs_.slots[idx] = rig;
     recons_[idx] = std::make_shared<rlpc::RigRecon>(mesh, *rig, header_.position_bits, true);
   }
   void finish_gof() {

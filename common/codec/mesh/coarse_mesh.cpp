@@ -21,9 +21,9 @@ CoarseMeshes::CoarseMeshes(std::uint32_t num_vertices, std::span<const Triangle>
   layer_of_vertex_ = std::move(layers.layer_of_vertex);
 }
 
-CoarseMeshes CoarseMeshes::of_output(std::uint32_t num_vertices,
-                                     std::span<const Triangle> triangles,
-                                     std::span<const std::uint32_t> output_index) {
+CoarseMeshes CoarseMeshes::from_output(std::uint32_t num_vertices,
+                                       std::span<const Triangle> triangles,
+                                       std::span<const std::uint32_t> output_index) {
   if (output_index.empty()) return {num_vertices, triangles};
   Vector<std::uint32_t> decoded(num_vertices);
   for (std::uint32_t v = 0; v < num_vertices; ++v) decoded[output_index[v]] = v;

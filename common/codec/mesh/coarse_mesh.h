@@ -29,8 +29,9 @@ class CoarseMeshes {
   CoarseMeshes(std::uint32_t num_vertices, std::span<const Triangle> triangles);
   // Makes coarse meshes of triangles in output order (8.6.1). output_index: VertexOrder or
   // empty.
-  static CoarseMeshes of_output(std::uint32_t num_vertices, std::span<const Triangle> triangles,
-                                std::span<const std::uint32_t> output_index);
+  static CoarseMeshes from_output(std::uint32_t num_vertices,
+                                  std::span<const Triangle> triangles,
+                                  std::span<const std::uint32_t> output_index);
 
   std::uint32_t num_layers() const { return num_layers_; }
   // LayerOfVertex, in decoded order.

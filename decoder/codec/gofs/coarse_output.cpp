@@ -8,7 +8,7 @@ namespace rlpc {
 
 CoarseOutput::CoarseOutput(std::uint32_t num_vertices, std::span<const Triangle> triangles,
                            std::span<const std::uint32_t> vertex_order, std::uint32_t layers) {
-  const auto meshes = CoarseMeshes::of_output(num_vertices, triangles, vertex_order);
+  const auto meshes = CoarseMeshes::from_output(num_vertices, triangles, vertex_order);
   CoarseMesh mesh = meshes.mesh(layers, vertex_order);
   num_layers_ = meshes.num_layers();
   decoded_ = std::move(mesh.vertices);

@@ -147,10 +147,10 @@ bool Prefetch::start_slots(std::uint64_t offset) {
   const auto rigs = stream_.rigs().at(offset);
   if (!rigs) return false;
   for (std::size_t m = 0; m < slots_.size(); ++m) {
-    if (!rigs->of_idx[m]) continue;
+    if (!rigs->slots[m]) continue;
     slots_[m] = make_shared_owned<RigAhead>();
     slots_[m]->is_tried = true;
-    slots_[m]->parsed = ParsedRig{static_cast<std::uint32_t>(m), rigs->of_idx[m], {}, 0};
+    slots_[m]->parsed = ParsedRig{static_cast<std::uint32_t>(m), rigs->slots[m], {}, 0};
   }
   return true;
 }
@@ -223,7 +223,7 @@ std::optional<RigSlots> Prefetch::parse(const Slots& slots) const {
     if (!slots[m]) continue;
     const ParsedRig* parsed = parse(*slots[m]);
     if (parsed == nullptr || parsed->rig_idx != m) return std::nullopt;
-    rigs.of_idx[m] = parsed->rig;
+    rigs.slots[m] = parsed->rig;
   }
   return rigs;
 }

@@ -54,7 +54,7 @@ inline std::uint64_t memory_of_rig(const SharedRig& rig) {
 }
 inline std::uint64_t memory_of_rigs(const RigSlots& rigs) {
   std::uint64_t sum = 0;
-  for (const auto& rig : rigs.of_idx) {
+  for (const auto& rig : rigs.slots) {
     if (rig) sum += memory_of_rig(*rig);
   }
   return sum;

@@ -84,7 +84,7 @@ Result<RigSlots> StreamRigs::at(std::uint64_t gof_offset) {
     if (!take_back(offset, entry)) {
       if (const auto ok = parse(offset, entry, rigs); !ok) return ok.error();
     }
-    rigs.of_idx[entry.rig_idx] = entry.rig;
+    rigs.slots[entry.rig_idx] = entry.rig;
   }
   return rigs;
 }

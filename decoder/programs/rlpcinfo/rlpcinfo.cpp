@@ -194,8 +194,8 @@ int inform(const Options& o) {
   }
   std::optional<rlpc::CoarseMeshes> meshes;
   if (o.coarse || with_pictures) {
-    meshes = rlpc::CoarseMeshes::of_output(stream.header().num_vertices, stream.triangles(),
-                                           stream.vertex_order());
+    meshes = rlpc::CoarseMeshes::from_output(stream.header().num_vertices, stream.triangles(),
+                                             stream.vertex_order());
     if (o.coarse) info.coarse = &*meshes;
   }
   if (with_pictures) {

@@ -20,7 +20,7 @@ class CompactResiduals {
   std::size_t size() const { return small_.size(); }
   // Sets a residual, each at most once and in any order. sort() must follow before reading.
   void set(std::size_t i, std::int32_t value) {
-    if (value > kLarge && value <= kMost) {
+    if (value > kLarge && value <= kMaxSmall) {
       small_[i] = static_cast<std::int8_t>(value);
     } else {
       small_[i] = kLarge;
@@ -40,7 +40,7 @@ class CompactResiduals {
 
  private:
   static constexpr std::int8_t kLarge = std::numeric_limits<std::int8_t>::min();
-  static constexpr std::int8_t kMost = std::numeric_limits<std::int8_t>::max();
+  static constexpr std::int8_t kMaxSmall = std::numeric_limits<std::int8_t>::max();
 
   Vector<std::int8_t> small_;
   Vector<std::pair<std::size_t, std::int32_t>> large_;  // index and value, by index

@@ -41,20 +41,20 @@ class PatchContexts {
   // %; so do half and twice the first mean.
   void update(std::size_t i, std::int32_t residual) {
     const std::uint32_t magnitude = magnitude_of(residual);
-    std::uint32_t& of_all = state().mean[kind(i)];
+    std::uint32_t& overall = state().mean[kind(i)];
     std::uint32_t& own = patch().mean[kind(i)];
-    of_all = update_mean(of_all, magnitude, 5);
+    overall = update_mean(overall, magnitude, 5);
     own = update_mean(own, magnitude, 2);
   }
 
   // State that update() changes, for encoders that try a motion.
   struct Means {
-    std::array<std::uint32_t, 2> of_all{};
+    std::array<std::uint32_t, 2> overall{};
     std::array<std::uint32_t, 2> own{};
   };
   Means means() const { return {states_[depth_].mean, states_[depth_].patches[patch_].mean}; }
   void set_means(const Means& means) {
-    state().mean = means.of_all;
+    state().mean = means.overall;
     patch().mean = means.own;
   }
 

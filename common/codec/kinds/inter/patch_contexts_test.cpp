@@ -22,13 +22,13 @@ TEST(PatchContextsOfFrames, DependOnTheModeBefore) {
   PatchContexts contexts(2, 1);
   contexts.start_frame(0);
   contexts.start(0);
-  const auto* of_neighbours = &contexts.mode_models();
+  const auto* neighbour_models = &contexts.mode_models();
   contexts.set_mode(PatchMode::kAlone);
   contexts.start(1);
-  EXPECT_EQ(&contexts.mode_models(), of_neighbours);
+  EXPECT_EQ(&contexts.mode_models(), neighbour_models);
   contexts.start_frame(0);
   contexts.start(0);
-  EXPECT_NE(&contexts.mode_models(), of_neighbours);
+  EXPECT_NE(&contexts.mode_models(), neighbour_models);
 }
 
 }  // namespace

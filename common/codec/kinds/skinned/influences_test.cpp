@@ -13,7 +13,7 @@
 namespace rlpc {
 namespace {
 
-constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
+constexpr auto kResidualBound = static_cast<std::int32_t>(kMaxResidual);
 
 Influences of(std::initializer_list<Influence> list) {
   Influences influences;
@@ -87,7 +87,7 @@ TEST(Influences, ExpectedResidualsFollowTheDifferencesInTheRing) {
   EXPECT_EQ(prediction.expected(1), 107U);
   prediction.add_candidate(1, -0xfffff);
   EXPECT_EQ(prediction.expected(1), 77U + 5 * 0xfffff);
-  for (const std::int32_t clipped : {0x100000, -0x100001, kMost, -kMost}) {
+  for (const std::int32_t clipped : {0x100000, -0x100001, kResidualBound, -kResidualBound}) {
     prediction.add_candidate(1, clipped);
     EXPECT_EQ(prediction.expected(1), 77U + 5 * 0x100000) << clipped;
   }
@@ -112,18 +112,18 @@ TEST(Influences, ExtraBonesAreAtMostFourAndNew) {
 
 TEST(Influences, NoBoneCanBeAddedWithoutWeightOrWithoutBones) {
   const std::vector<Influences> known{of({{0, 8}, {1, 8}})};
-  InfluencePrediction of_two(known, 2, 4);
+  InfluencePrediction two_bones(known, 2, 4);
   const std::vector<std::uint32_t> ring{0};
-  of_two.start(ring);
-  EXPECT_FALSE(of_two.can_add_bone()) << "both are candidates";
-  InfluencePrediction of_three(known, 3, 4);
-  of_three.start(ring);
-  ASSERT_TRUE(of_three.can_add_bone());
-  of_three.add_extra_bone(2, 16);
-  EXPECT_FALSE(of_three.can_add_bone());
-  EXPECT_FALSE(of_three.has_residual()) << "no weight is left";
-  of_three.add_candidate(1, kMost);
-  EXPECT_EQ(list_of(of_three.finish()), (std::vector<Influence>{{2, 16}}));
+  two_bones.start(ring);
+  EXPECT_FALSE(two_bones.can_add_bone()) << "both are candidates";
+  InfluencePrediction three_bones(known, 3, 4);
+  three_bones.start(ring);
+  ASSERT_TRUE(three_bones.can_add_bone());
+  three_bones.add_extra_bone(2, 16);
+  EXPECT_FALSE(three_bones.can_add_bone());
+  EXPECT_FALSE(three_bones.has_residual()) << "no weight is left";
+  three_bones.add_candidate(1, kResidualBound);
+  EXPECT_EQ(list_of(three_bones.finish()), (std::vector<Influence>{{2, 16}}));
 }
 
 // A ring of 7 can give 56 candidates. After 7 influences, only the first candidate is added.
@@ -174,7 +174,7 @@ TEST(RandomInfluences, AreLegalWhateverTheResiduals) {
       }
       for (std::size_t k = 1; k < prediction.num_candidates(); ++k) {
         const std::int32_t small = static_cast<std::int32_t>(below(9)) - 4;
-        const std::int32_t large = below(2) == 0 ? kMost : -kMost;
+        const std::int32_t large = below(2) == 0 ? kResidualBound : -kResidualBound;
         prediction.add_candidate(k, below(8) == 0 ? large : small);
       }
       influences[v] = prediction.finish();

@@ -12,13 +12,13 @@ namespace rlpc {
 
 // Shared rigs by rig_idx; null: none. Copies share the rigs.
 struct RigSlots {
-  std::array<std::shared_ptr<const SharedRig>, kMaxRigs> of_idx;
+  std::array<std::shared_ptr<const SharedRig>, kMaxRigs> slots;
 
   // FactorsOfRigs( other ); other = kMaxRigs: counts all rigs.
   std::uint64_t num_factors(std::size_t other) const {
     std::uint64_t sum = 0;
-    for (std::size_t m = 0; m < of_idx.size(); ++m) {
-      if (m != other && of_idx[m]) sum += rlpc::num_factors(*of_idx[m]);
+    for (std::size_t m = 0; m < slots.size(); ++m) {
+      if (m != other && slots[m]) sum += rlpc::num_factors(*slots[m]);
     }
     return sum;
   }

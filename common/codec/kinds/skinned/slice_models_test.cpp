@@ -11,7 +11,7 @@
 namespace rlpc {
 namespace {
 
-constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
+constexpr auto kResidualBound = static_cast<std::int32_t>(kMaxResidual);
 
 // Random rings, not from a mesh.
 struct Rings {
@@ -132,7 +132,7 @@ TEST(VertexContexts, AgreeWithTheSpecification) {
         ASSERT_EQ(contexts.activity(), text.activity()) << i << " " << v << " " << l;
         ++seen[contexts.activity()];
         auto residual = static_cast<std::int32_t>(below(1U << bits));
-        if (below(50) == 0) residual = below(2) == 0 ? kMost : 255;
+        if (below(50) == 0) residual = below(2) == 0 ? kResidualBound : 255;
         if (below(2) == 0) residual = -residual;
         contexts.update(residual);
         text.update(l, v, residual);
@@ -158,8 +158,8 @@ TEST(VertexContexts, SupportTheLargestResiduals) {
     for (std::size_t l = 0; l < 300; ++l) {
       ASSERT_EQ(contexts.expected(), text.expected(l, v)) << v << " " << l;
       ASSERT_EQ(contexts.activity(), text.activity()) << v << " " << l;
-      contexts.update(v < 28 ? -kMost : 0);
-      text.update(l, v, v < 28 ? -kMost : 0);
+      contexts.update(v < 28 ? -kResidualBound : 0);
+      text.update(l, v, v < 28 ? -kResidualBound : 0);
     }
   }
 }

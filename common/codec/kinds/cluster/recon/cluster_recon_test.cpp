@@ -15,7 +15,7 @@ namespace {
 
 using Positions = std::vector<std::int32_t>;
 
-constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
+constexpr auto kResidualBound = static_cast<std::int32_t>(kMaxResidual);
 constexpr int kUnitScale = 32;  // scale_idx of scale 1
 
 SequenceHeader header_of(std::uint32_t num_vertices, int position_bits = 20) {
@@ -101,14 +101,15 @@ TEST(ClusterRecon, TemporalValuesArePredictedAndClippedTo24Bits) {
   EXPECT_EQ(recon_temporal(component), (std::vector<std::int32_t>{100, 110, 130, 145}));
   component.temporal_predictor = 0;
   EXPECT_EQ(recon_temporal(component), component.temporal_residual);
-  const std::int32_t most = (1 << 23) - 1;
-  component = component_of({kMost, 1, -kMost, -kMost, kMost}, {});
+  const std::int32_t max_value = (1 << 23) - 1;
+  component =
+      component_of({kResidualBound, 1, -kResidualBound, -kResidualBound, kResidualBound}, {});
   component.temporal_predictor = 4;
   const std::vector<std::int32_t> values = recon_temporal(component);
-  EXPECT_EQ(values[0], most);
-  EXPECT_EQ(values[1], most);
-  EXPECT_EQ(values[2], -most - 1);
-  EXPECT_EQ(values[3], -most - 1);
+  EXPECT_EQ(values[0], max_value);
+  EXPECT_EQ(values[1], max_value);
+  EXPECT_EQ(values[2], -max_value - 1);
+  EXPECT_EQ(values[3], -max_value - 1);
 }
 
 // Square of two triangles.
@@ -277,24 +278,26 @@ TEST(ClusterRecon, CombinesWorldAndLocalClusters) {
 TEST(ClusterRecon, SaturatingInputsAreClippedNotWrapped) {
   ClusterGof gof = lcf_gof(1);
   gof.seed_step = kMaxSeedStep;
-  for (SeedTrack& track : gof.seed_tracks) track.residual = {{kMost, -kMost, kMost}};
-  gof.seed_tracks[1].residual = {{-kMost, 0, 0}};
+  for (SeedTrack& track : gof.seed_tracks)
+    track.residual = {{kResidualBound, -kResidualBound, kResidualBound}};
+  gof.seed_tracks[1].residual = {{-kResidualBound, 0, 0}};
   Component component = component_of({-(1 << 23)}, {});
   component.scale_idx = kMaxScaleIdx;
   component.temporal_bits = kMaxTemporalBits;
   component.spatial_bits = kMaxSpatialBits;
-  component.spatial_residual = {-kMost, kMost, kMost, kMost, -kMost, kMost};
+  component.spatial_residual = {-kResidualBound, kResidualBound,  kResidualBound,
+                                kResidualBound,  -kResidualBound, kResidualBound};
   gof.clusters[0].components.assign(3, component);
-  const std::int32_t most = (1 << 23) - 1;
+  const std::int32_t max_value = (1 << 23) - 1;
   const Positions positions = frame_of(header_of(5, 24), gof, 0);
   EXPECT_EQ((Positions{positions.begin() + 9, positions.begin() + 12}),
-            (Positions{most, -most - 1, most}));  // seed 3
+            (Positions{max_value, -max_value - 1, max_value}));  // seed 3
   for (const std::int32_t x : positions) {
-    EXPECT_GE(x, -most - 1);
-    EXPECT_LE(x, most);
+    EXPECT_GE(x, -max_value - 1);
+    EXPECT_LE(x, max_value);
   }
   gof.clusters[0].lcf_flag = false;
-  EXPECT_EQ((Positions{frame_of(header_of(5, 24), gof, 0)[6]}), Positions{most});
+  EXPECT_EQ((Positions{frame_of(header_of(5, 24), gof, 0)[6]}), Positions{max_value});
 }
 
 // Several frames at a time; clusters with and without a local frame, of more than a tile.

@@ -13,8 +13,8 @@ namespace {
 __extension__ using Int128 = __int128;
 
 constexpr std::int64_t kOne = std::int64_t{1} << kAxisFractionBits;
-constexpr std::int32_t kMost = (1 << 23) - 1;  // positions of 24 bits
-constexpr std::int32_t kLeast = -(1 << 23);
+constexpr std::int32_t kMaxPosition = (1 << 23) - 1;  // positions of 24 bits
+constexpr std::int32_t kMinPosition = -(1 << 23);
 constexpr std::int64_t kLocalMost = std::int64_t{1} << 30;
 
 Int128 dot(const Vec3l& a, const Vec3l& b) {
@@ -80,7 +80,8 @@ TEST(Lcf, AxesAreOrthonormal) {
 
 // The thinnest and largest triangles of 24-bit positions.
 TEST(Lcf, AxesOfExtremeTrianglesAreOrthonormal) {
-  const std::vector<std::int32_t> values{kLeast, kLeast + 1, -1, 0, 1, kMost - 1, kMost};
+  const std::vector<std::int32_t> values{kMinPosition,     kMinPosition + 1, -1, 0, 1,
+                                         kMaxPosition - 1, kMaxPosition};
   for (const std::int32_t a : values) {
     for (const std::int32_t b : values) {
       for (const std::int32_t c : values) {
@@ -94,7 +95,8 @@ TEST(Lcf, AxesOfExtremeTrianglesAreOrthonormal) {
 }
 
 TEST(Lcf, HasWorldAxesIfTheFirstTwoSeedsCoincide) {
-  for (const Vec3i& third : {Vec3i{7, -3, 9}, Vec3i{1, 2, 3}, Vec3i{kMost, kLeast, 0}}) {
+  for (const Vec3i& third :
+       {Vec3i{7, -3, 9}, Vec3i{1, 2, 3}, Vec3i{kMaxPosition, kMinPosition, 0}}) {
     const Lcf lcf = make_lcf({1, 2, 3}, {1, 2, 3}, third);
     EXPECT_EQ(lcf.doubled_origin, (Vec3l{2, 4, 6}));
     EXPECT_EQ(lcf.axis[0], (Vec3l{kOne, 0, 0}));
@@ -165,8 +167,8 @@ TEST(LcfToWorld, StepsAlongTheAxes) {
 
 // The sum of 8.4.3 in 128 bits: nothing overflows for the largest frames and coordinates.
 TEST(LcfToWorld, IsExactAtItsBounds) {
-  for (const std::int32_t p : {kLeast, -1, kMost}) {
-    for (const std::int32_t q : {kLeast, 0, kMost}) {
+  for (const std::int32_t p : {kMinPosition, -1, kMaxPosition}) {
+    for (const std::int32_t q : {kMinPosition, 0, kMaxPosition}) {
       const Lcf lcf = make_lcf({p, q, p}, {q, q, p}, {q, p, q});
       for (const std::int64_t x : {-kLocalMost, std::int64_t{1}, kLocalMost - 1}) {
         for (const std::int64_t y : {-kLocalMost, std::int64_t{-1}, kLocalMost - 1}) {

@@ -25,8 +25,8 @@ constexpr std::int32_t kErrorWalk = 128;
 // where frames are predicted from the previous one, 3.5 % with dyadic patterns, up to 7 % with
 // five temporal layers.
 constexpr int kFirstSpreadShift = 21;
-constexpr std::int64_t kMostMotion = std::int64_t{1} << 29;
-constexpr std::int64_t kMostOlderError = std::int64_t{1} << 30;
+constexpr std::int64_t kMaxMotion = std::int64_t{1} << 29;
+constexpr std::int64_t kMaxOlderError = std::int64_t{1} << 30;
 
 // MotionWalk( v, i ) by the sizes of ring and near vertices.
 using Walks =
@@ -188,11 +188,11 @@ void InterRecon::make_reference() {
     return;
   }
   const Vector<std::int32_t>& b = kept_.at(now_.place.second).values;
-  const std::int64_t of_a = now_.place.second - now_.place.frame;
-  const std::int64_t of_b = now_.place.frame - now_.place.first;
+  const std::int64_t weight_a = now_.place.second - now_.place.frame;
+  const std::int64_t weight_b = now_.place.frame - now_.place.first;
   for (std::size_t i = 0; i < frame_.reference.size(); ++i) {
-    frame_.reference[i] =
-        static_cast<std::int32_t>(div_round(of_a * a[i] + of_b * b[i], of_a + of_b));
+    frame_.reference[i] = static_cast<std::int32_t>(
+        div_round(weight_a * a[i] + weight_b * b[i], weight_a + weight_b));
   }
 }
 
@@ -323,7 +323,7 @@ void InterRecon::predict(std::uint32_t v, VertexMotion& motion, bool is_there) c
       sum += std::int64_t{weights[i]} * motion.offsets[c][i];
     }
     motion.plain[c] =
-        clip3(-kMostMotion, kMostMotion, motion.mean[c] + round2(sum, kWeightFractionBits));
+        clip3(-kMaxMotion, kMaxMotion, motion.mean[c] + round2(sum, kWeightFractionBits));
   }
   if (settings_.learning_flag)
     return predict(learned_[now_.temporal_layer], v, motion, is_there);
@@ -400,10 +400,10 @@ std::int32_t InterRecon::start_of(std::uint32_t v, const VertexMotion& motion,
 // 8.19.3 DecodeVertex( f, v )
 Vec3i InterRecon::position(std::uint32_t v, const VertexMotion& motion,
                            const Vec3i& residual) const {
-  const std::int64_t of_step = step(v);
+  const std::int64_t vertex_step = step(v);
   Vec3i values{};
   for (std::size_t c = 0; c < 3; ++c) {
-    const std::int64_t difference = round2(residual[c] * of_step, kPointFractionBits);
+    const std::int64_t difference = round2(residual[c] * vertex_step, kPointFractionBits);
     values[c] = clip_signed(bits_.value, start_of(v, motion, c) + difference);
   }
   return values;
@@ -430,9 +430,9 @@ void InterRecon::set(std::uint32_t v, const VertexMotion& motion, const Vec3i& p
 void InterRecon::adapt(std::uint32_t v, VertexMotion& motion, bool is_there,
                        std::uint32_t expected) {
   if (now_.number == 0 || !settings_.learning_flag) return;
-  const std::int64_t of_step = step(v);
+  const std::int64_t vertex_step = step(v);
   const std::int64_t variance =
-      of_step * of_step * (128 + std::int64_t{expected} * std::int64_t{expected});
+      vertex_step * vertex_step * (128 + std::int64_t{expected} * std::int64_t{expected});
   const std::uint32_t own = now_.temporal_layer;
   for (std::uint32_t t = own; t < settings_.pattern.temporal_layers; ++t) {
     Learned& learned = learned_[t];
@@ -485,8 +485,8 @@ void InterRecon::end_errors() {
     Learned& learned = learned_[t];
     for (std::size_t i = 0; i < learned.older_error.size(); ++i) {
       const std::int64_t sum = std::int64_t{learned.older_error[i]} + learned.error1[i];
-      learned.older_error[i] = static_cast<std::int32_t>(
-          clip3(-kMostOlderError, kMostOlderError, round2(3 * sum, 2)));
+      learned.older_error[i] =
+          static_cast<std::int32_t>(clip3(-kMaxOlderError, kMaxOlderError, round2(3 * sum, 2)));
     }
     learned.error1.swap(learned.error);
     learned.plain_error2.swap(learned.plain_error1);

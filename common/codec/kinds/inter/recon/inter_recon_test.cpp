@@ -39,8 +39,8 @@ InterGof random_gof(unsigned seed, const OrderedMesh& mesh, std::uint32_t num_fr
   for (InterFrame& frame : *frames) {
     if (frame.layer_groups == 0 || frame.repeated) continue;
     for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
-      const std::uint32_t most = random() % 4 == 0 ? kMaxInterExpected : 40;
-      frame.expected.push_back(static_cast<std::uint16_t>(random() % (most + 1)));
+      const std::uint32_t max_expected = random() % 4 == 0 ? kMaxInterExpected : 40;
+      frame.expected.push_back(static_cast<std::uint16_t>(random() % (max_expected + 1)));
     }
   }
   gof.frames = std::move(frames);

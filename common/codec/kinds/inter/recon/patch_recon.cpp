@@ -9,8 +9,8 @@
 namespace rlpc {
 namespace {
 
-constexpr std::int64_t kMostOffset = std::int64_t{1} << 29;
-constexpr std::int64_t kMostMatrix = std::int64_t{1} << 18;
+constexpr std::int64_t kMaxOffset = std::int64_t{1} << 29;
+constexpr std::int64_t kMaxMatrix = std::int64_t{1} << 18;
 
 }  // namespace
 
@@ -41,32 +41,32 @@ PatchRecon::PatchRecon(std::uint32_t num_patches, const PatchOfVertex& patch_of_
   for (const std::uint32_t v : vertices)
     sum[patch_of_vertex[v]] += distance(v, patch_of_vertex[v]);
   const auto empty = std::find(size_.begin(), size_.end(), std::size_t{0});
-  std::int64_t of_all = 0;
+  std::int64_t overall_sum = 0;
   if (empty != size_.end()) {
     const auto patch = static_cast<std::size_t>(empty - size_.begin());
-    for (const std::uint32_t v : vertices) of_all += distance(v, patch);
+    for (const std::uint32_t v : vertices) overall_sum += distance(v, patch);
   }
   for (std::size_t p = 0; p < num_patches; ++p) {
     const std::size_t size = size_[p] > 0 ? size_[p] : vertices.size();
     const std::int64_t mean =
-        div_round(size_[p] > 0 ? sum[p] : of_all, static_cast<std::int64_t>(size));
+        div_round(size_[p] > 0 ? sum[p] : overall_sum, static_cast<std::int64_t>(size));
     reach_[p] = std::max<std::int64_t>(1, mean);
   }
 }
 
 Vector<Vec3i> PatchRecon::centres(std::span<const std::int32_t> frame) const {
   Vector<Vec3l> sum(size_.size());
-  Vec3l of_all{};
+  Vec3l overall_sum{};
   for (const std::uint32_t v : vertices_) {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::int32_t value = frame[3 * std::size_t{v} + c];
       sum[patch_of_vertex_[v]][c] += value;
-      of_all[c] += value;
+      overall_sum[c] += value;
     }
   }
   Vector<Vec3i> centres(size_.size());
   for (std::size_t p = 0; p < size_.size(); ++p) {
-    const Vec3l& total = size_[p] > 0 ? sum[p] : of_all;
+    const Vec3l& total = size_[p] > 0 ? sum[p] : overall_sum;
     const auto count = static_cast<std::int64_t>(size_[p] > 0 ? size_[p] : vertices_.size());
     for (std::size_t c = 0; c < 3; ++c) {
       centres[p][c] = static_cast<std::int32_t>(div_round(total[c], count));
@@ -83,11 +83,11 @@ PatchRecon::Motion PatchRecon::motion(
     const std::int64_t difference = std::int64_t{residual[i]} * step;
     if (i < kOffsetValues) {
       motion[i] = static_cast<std::int32_t>(
-          clip3(-kMostOffset, kMostOffset, motion[i] + round2(difference, kMotionStepLog2)));
+          clip3(-kMaxOffset, kMaxOffset, motion[i] + round2(difference, kMotionStepLog2)));
     } else {
       const std::int64_t turn =
           div_round(difference * (1 << (kMatrixFractionBits - kMotionStepLog2)), reach_[patch]);
-      motion[i] = static_cast<std::int32_t>(clip3(-kMostMatrix, kMostMatrix, motion[i] + turn));
+      motion[i] = static_cast<std::int32_t>(clip3(-kMaxMatrix, kMaxMatrix, motion[i] + turn));
     }
   }
   return motion;

@@ -169,10 +169,11 @@ TEST(PatchRecon, PatchesOfHigherLayersTurnWithAllOfTheLowest) {
 
 TEST(PatchRecon, NumbersAndPointsAreClipped) {
   Square square(1, 4);
-  constexpr std::int32_t kMost = (1 << 28) - 1;
-  const PatchMotion most = moving({kMost, -kMost, 0, kMost, 0, 0, -kMost});
+  constexpr std::int32_t kResidualBound = (1 << 28) - 1;
+  const PatchMotion extreme =
+      moving({kResidualBound, -kResidualBound, 0, kResidualBound, 0, 0, -kResidualBound});
   for (int i = 0; i < 3; ++i) {
-    square.recon->start_frame(square.first, 0, 1 << 16, {most, PatchMotion{}});
+    square.recon->start_frame(square.first, 0, 1 << 16, {extreme, PatchMotion{}});
   }
   const PatchRecon::Motion& motion = square.recon->last_motion(0, 0);
   EXPECT_EQ(motion[0], 1 << 29);
@@ -208,8 +209,9 @@ TEST(RandomPatches, MoveAsSpecified) {
       if (is_extreme && below(2) == 0) {
         return static_cast<std::int32_t>(below(2) == 0 ? half - 1 : -half);
       }
-      const std::int64_t most = half >> below(static_cast<std::uint64_t>(bits));
-      const auto x = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(most));
+      const std::int64_t max_magnitude = half >> below(static_cast<std::uint64_t>(bits));
+      const auto x =
+          static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(max_magnitude));
       return static_cast<std::int32_t>(below(2) == 0 ? x : -x);
     };
     const int position_bits = is_extreme ? 24 : 2 + static_cast<int>(below(23));
@@ -228,14 +230,14 @@ TEST(RandomPatches, MoveAsSpecified) {
       for (std::uint32_t i = 0; i < 3 * num_vertices; ++i) {
         reference.push_back(number(position_bits + 5));
       }
-      FramePatches of_frame(below(5) == 0 ? 0 : num_patches);
-      for (PatchMotion& patch : of_frame) {
+      FramePatches frame_patches(below(5) == 0 ? 0 : num_patches);
+      for (PatchMotion& patch : frame_patches) {
         patch.mode = static_cast<PatchMode>(below(3));
         for (std::int32_t& x : patch.residual) x = number(is_extreme ? 29 : 12);
       }
       const std::uint32_t step = is_extreme ? 65536 : 1 + below(200);
       ASSERT_NO_FATAL_FAILURE(
-          patches.expect_frame(reference, below(num_depths), step, of_frame))
+          patches.expect_frame(reference, below(num_depths), step, frame_patches))
           << "frame " << f;
     }
   }

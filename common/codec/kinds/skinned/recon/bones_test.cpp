@@ -17,7 +17,7 @@
 namespace rlpc {
 namespace {
 
-constexpr auto kMost = static_cast<std::int32_t>(kMaxResidual);
+constexpr auto kResidualBound = static_cast<std::int32_t>(kMaxResidual);
 
 TEST(Steps, DoubleEveryEighth) {
   EXPECT_EQ(step_of(0), 1);
@@ -287,7 +287,8 @@ TEST(Bones, TheLargestRotationIsAQuarterTurn) {
     Bone bone;
     bone.rotation_flag = true;
     bone.rotation_step_idx = kMaxStepIdx;
-    bone.rotation_residual = {{sign * kMost, 0, 0}, {sign * kMost, 0, 0}};  // from there on
+    bone.rotation_residual = {{sign * kResidualBound, 0, 0},
+                              {sign * kResidualBound, 0, 0}};  // from there on
     const BoneMotion motion = recon_bones(std::vector<Bone>{bone}, 2, 0)[0];
     const auto& axes = motion.poses[0].axes;
     EXPECT_LE(std::abs(axes[1][2] - sign * kOneI), 16);
@@ -309,7 +310,7 @@ TEST(Bones, OriginsAreClippedToTheirRange) {
       bone.origin_order = order;
       bone.pivot = {-(1 << 28), (1 << 28) - 1, b % 2 == 0 ? 1 << 27 : -(1 << 28)};
       for (std::uint32_t f = 0; f < 40; ++f) {
-        const std::int32_t now = f / 3 % 2 == b % 2 ? kMost : -kMost;
+        const std::int32_t now = f / 3 % 2 == b % 2 ? kResidualBound : -kResidualBound;
         bone.rotation_residual.push_back({now, -now, f % 2 == 0 ? now : 0});
         bone.origin_residual.push_back({now, f % 7 == 0 ? -now : now, -now});
       }

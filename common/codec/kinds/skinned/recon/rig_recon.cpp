@@ -47,10 +47,10 @@ struct ValueRecon {
   void adaptive_values(std::uint32_t v, int layer_step, VertexAdaptation& adaptation) const {
     const std::size_t n = bits.size();
     for (std::size_t k = 0; k < n; ++k) {
-      const std::int64_t of_weights = adaptation.predict();
+      const std::int64_t predicted_value = adaptation.predict();
       values[v * n + k] = clip_signed(
-          bits[k], of_weights + factor_difference(residuals[v * n + k], layer_step));
-      adaptation.add(of_weights, values[v * n + k]);
+          bits[k], predicted_value + factor_difference(residuals[v * n + k], layer_step));
+      adaptation.add(predicted_value, values[v * n + k]);
     }
     adaptation.finish();
   }
@@ -145,9 +145,9 @@ Vector<std::int32_t> RigRecon::recon_rest(const SharedRig& rig) const {
 void RigRecon::add_influences(const SharedRig& rig, std::span<const std::int32_t> rest) {
   const Vector<Influences> influences = complete_influences(mesh_, rig);
   // Exact, except for runs, which are usually fewer.
-  const std::size_t count = std::accumulate(
-      influences.begin(), influences.end(), std::size_t{0},
-      [](std::size_t sum, const Influences& of_vertex) { return sum + of_vertex.size; });
+  const std::size_t count =
+      std::accumulate(influences.begin(), influences.end(), std::size_t{0},
+                      [](std::size_t sum, const Influences& list) { return sum + list.size; });
   for (auto& list : arm_) list.reserve(count + kPadding);
   weight_.reserve(count + kPadding);
   place_.reserve(count);
@@ -156,17 +156,17 @@ void RigRecon::add_influences(const SharedRig& rig, std::span<const std::int32_t
     Influence influence;
     std::size_t vertex;
   };
-  Vector<Entry> of_tile;
+  Vector<Entry> tile_entries;
   for (std::size_t first = 0; first < num_vertices(); first += kTileValues) {
-    of_tile.clear();
+    tile_entries.clear();
     for (std::size_t v = first; v < std::min(first + kTileValues, num_vertices()); ++v) {
-      for (const Influence& influence : influences[v]) of_tile.push_back({influence, v});
+      for (const Influence& influence : influences[v]) tile_entries.push_back({influence, v});
     }
-    std::sort(of_tile.begin(), of_tile.end(), [](const Entry& a, const Entry& b) {
+    std::sort(tile_entries.begin(), tile_entries.end(), [](const Entry& a, const Entry& b) {
       return std::tie(a.influence.bone, a.vertex) < std::tie(b.influence.bone, b.vertex);
     });
     first_run_.push_back(runs_.size());
-    for (const auto& [influence, v] : of_tile) {
+    for (const auto& [influence, v] : tile_entries) {
       const auto next = static_cast<std::uint32_t>(weight_.size());
       if (first_run_.back() == runs_.size() || runs_.back().bone != influence.bone) {
         runs_.push_back({influence.bone, next, next});
@@ -202,12 +202,12 @@ std::shared_ptr<const SpatialFactors> RigRecon::recon_factors(const SharedRig& r
   auto factors = make_shared_owned<SpatialFactors>(num_vertices());
   const ValuePrediction prediction(mesh_, false, weights_ ? &*weights_ : nullptr);
   for (std::size_t group = 1; group < rig.group_end.size(); ++group) {
-    const FactorGroup of_group = factor_group(rig, group);
+    const FactorGroup group_factors = factor_group(rig, group);
     const auto values = recon_values(mesh_, rig, group, position_bits_, prediction, adaptive);
-    for (std::size_t k = 0; k < of_group.size(); ++k) {
+    for (std::size_t k = 0; k < group_factors.size(); ++k) {
       factors->add(std::span(values).subspan(k),
-                   rig.trajectories[of_group.first + k - kRestFactors].spatial_bits,
-                   of_group.size());
+                   rig.trajectories[group_factors.first + k - kRestFactors].spatial_bits,
+                   group_factors.size());
     }
   }
   return factors;

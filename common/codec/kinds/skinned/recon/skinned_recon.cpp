@@ -76,8 +76,9 @@ SkinnedRecon::SkinnedRecon(std::shared_ptr<const RigRecon> rig, const SkinnedGof
     temporal.push_back(temporal_factor(t, gof.track_levels));
   }
   const auto add_sum = [&](std::shared_ptr<const SpatialFactors> spatial,
-                           std::span<const TemporalFactor> of_spatial) {
-    sums_.emplace_back(std::move(spatial), of_spatial, 3 * std::size_t{num_frames_}, loops);
+                           std::span<const TemporalFactor> temporal_factors) {
+    sums_.emplace_back(std::move(spatial), temporal_factors, 3 * std::size_t{num_frames_},
+                       loops);
   };
   const std::size_t shared = std::min(temporal.size(), rig_->factors()->num_components());
   add_sum(rig_->factors(), std::span(temporal).first(shared));
@@ -122,7 +123,7 @@ void SkinnedRecon::skin_tile(std::size_t tile, std::uint32_t f, Sums& sums) cons
   const std::size_t n = std::min(kTileValues, rig_->num_vertices() - tile * kTileValues);
   const bool alone = num_runs == 1 && rig_->run(tile, 0).arms.size == n;
   if (!alone) {
-    for (auto& of_coordinate : sums) of_coordinate.fill(0);
+    for (auto& coordinate_sums : sums) coordinate_sums.fill(0);
   }
   std::array<std::int64_t, kTileValues> places{};
   for (std::size_t i = 0; i < num_runs; ++i) {

@@ -116,7 +116,7 @@ class TextRecon {
       std::int64_t mean = 0;
       offsets[c] = neighbour_offsets(v, factors[c], mean);
       gap[c] = factors[c][v] - mean;
-      largest = std::max({largest, std::abs(gap[c]), FilterOfText::most_of(offsets[c])});
+      largest = std::max({largest, std::abs(gap[c]), FilterOfText::max_magnitude(offsets[c])});
     }
     const int shift = floor_log2(static_cast<std::uint64_t>(largest)) - 9;
     for (std::size_t c = 0; c < 3; ++c) {

@@ -93,7 +93,7 @@ TEST(ParseFramePattern, ReadsTheBitsOfAnExplicitPattern) {
 }
 
 TEST(ParseFramePattern, OfOneExplicitEntryHasNoLayers) {
-  const FramePattern pattern = parse_legal(FramePatternRecipe::of_entries({{0, {0}, 0}}));
+  const FramePattern pattern = parse_legal(FramePatternRecipe::from_entries({{0, {0}, 0}}));
   EXPECT_EQ(pattern.period(), 1U);
   EXPECT_EQ(pattern.temporal_layers, 1U);
 }
@@ -102,7 +102,7 @@ TEST(ParseFramePattern, OfOneExplicitEntryHasNoLayers) {
 TEST(ParseFramePattern, TakesTheLongestExplicitPeriod) {
   Entries entries;
   for (std::uint32_t k = 0; k < 32; ++k) entries.push_back({k, {k}, 0});
-  const FramePattern pattern = parse_legal(FramePatternRecipe::of_entries(entries));
+  const FramePattern pattern = parse_legal(FramePatternRecipe::from_entries(entries));
   ASSERT_EQ(pattern.entries.size(), 32U);
   EXPECT_EQ(pattern.entries[31], (PatternEntry{32, {31, 31}, 0}));
 }
@@ -112,11 +112,11 @@ TEST(ParseFramePattern, TakesAllDepths) {
     Entries entries{{1, {0}, 0}, {0, {0, 2}, depth}};
     const std::optional<std::uint32_t> layers =
         depth > 0 ? std::optional<std::uint32_t>(depth) : std::nullopt;
-    const FramePattern pattern = parse_legal(FramePatternRecipe::of_entries(entries, layers));
+    const FramePattern pattern = parse_legal(FramePatternRecipe::from_entries(entries, layers));
     EXPECT_EQ(pattern.num_depths(), depth + 1);
     EXPECT_EQ(pattern.temporal_layers, depth + 1);
     if (depth == 0 || depth == 7) continue;
-    expect_invalid_at(parse(FramePatternRecipe::of_entries(entries, depth + 1)), "R-FRM-07",
+    expect_invalid_at(parse(FramePatternRecipe::from_entries(entries, depth + 1)), "R-FRM-07",
                       "temporal_layers_minus1", 43);
   }
 }
@@ -160,7 +160,7 @@ TEST(ParseFramePattern, EntriesFollowTheirReferences) {
   };
   for (std::size_t i = 0; i < list.size(); ++i) {
     SCOPED_TRACE(i);
-    expect_invalid_at(parse(FramePatternRecipe::of_entries(list[i].entries, 0)), "R-FRM-06",
+    expect_invalid_at(parse(FramePatternRecipe::from_entries(list[i].entries, 0)), "R-FRM-06",
                       list[i].element, list[i].bit_pos);
   }
 }
@@ -172,8 +172,8 @@ TEST(ParseFramePattern, EveryProperPrefixIsTruncated) {
   };
   const std::vector<Whole> list{
       {FramePatternRecipe::dyadic(3, 1), 8},
-      {FramePatternRecipe::of_entries({{1, {0}, 0}, {0, {0, 2}, 1}}, 1), 46},
-      {FramePatternRecipe::of_entries({{2, {0}, 0}, {0, {3}, 1}, {1, {1, 3}, 7}}, 7), 61}};
+      {FramePatternRecipe::from_entries({{1, {0}, 0}, {0, {0, 2}, 1}}, 1), 46},
+      {FramePatternRecipe::from_entries({{2, {0}, 0}, {0, {3}, 1}, {1, {1, 3}, 7}}, 7), 61}};
   for (const auto& [recipe, num_bits] : list) {
     const Bytes whole = bytes_of(recipe);
     for (std::size_t n = 0; 8 * n < num_bits; ++n) {

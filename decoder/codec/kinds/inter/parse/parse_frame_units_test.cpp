@@ -395,9 +395,9 @@ TEST(ParseFrameUnits, AGofEndsWhereItsFramesKeepTheirReferencesAndDepths) {
       }
     }
   };
-  check(FramePatternRecipe::of_entries({{0, {0}, 0}, {1, {0}, 0}, {2, {0}, 0}}), 1,
+  check(FramePatternRecipe::from_entries({{0, {0}, 0}, {1, {0}, 0}, {2, {0}, 0}}), 1,
         {{4, {4, 5, 6, 7, 8, 9}}, {5, {5, 6, 7, 8, 9}}, {6, {7, 8, 9}}, {8, {8, 9}}, {9, {}}});
-  check(FramePatternRecipe::of_entries({{0, {0}, 1}, {1, {0}, 0}, {2, {0}, 0}}, 0), 2,
+  check(FramePatternRecipe::from_entries({{0, {0}, 1}, {1, {0}, 0}, {2, {0}, 0}}, 0), 2,
         {{4, {4, 5, 6, 7, 8, 9}}, {5, {7, 8, 9}}, {7, {7, 8, 9}}, {8, {}}});
 }
 

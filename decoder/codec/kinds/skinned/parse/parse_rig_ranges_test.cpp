@@ -64,7 +64,7 @@ class Units {
     add_residuals(slice, spatial_bits_deltas.size());
     return this->slice(slice);
   }
-  void keep() { rigs.of_idx[parser_.rig_idx()] = parser_.finish_rig(); }
+  void keep() { rigs.slots[parser_.rig_idx()] = parser_.finish_rig(); }
   SkinnedGofParser& parser() { return parser_; }
 
   RigSlots rigs;
@@ -268,8 +268,8 @@ TEST(ParseRigRanges, FactorsOfAllRigsAreBoundedByTheLevel) {
   constexpr std::uint32_t kVertices = 16384;
   for (const std::size_t others : {509U, 510U}) {
     Units units(kVertices);
-    units.rigs.of_idx[2] = rig_of(kVertices, others - 3);
-    units.rigs.of_idx[6] = rig_of(kVertices, 3);
+    units.rigs.slots[2] = rig_of(kVertices, others - 3);
+    units.rigs.slots[6] = rig_of(kVertices, 3);
     const auto added = units.rig({}, 0);
     if (others == 509) {
       EXPECT_TRUE(added);
@@ -291,7 +291,7 @@ TEST(ParseRigRanges, FactorsOfGofsWithRigsAreBoundedByTheLevel) {
     ASSERT_TRUE(units.rest());
     ASSERT_TRUE(units.group({0}));
     units.keep();
-    units.rigs.of_idx[1] = rig_of(kVertices, factors - 4);
+    units.rigs.slots[1] = rig_of(kVertices, factors - 4);
     const auto gof = units.gof(recipe.tracks_payload(2, 0, 1));
     if (factors == 512) {
       expect_invalid(gof, "R-LVL-05", "track_section");
@@ -326,7 +326,7 @@ TEST(ParseRigRanges, FactorsOfTracksAreBoundedByTheLevel) {
     auto other = rig_of(1, 3);
     other->influences.resize(1);
     other->trajectories.resize(others - kRestFactors);
-    units.rigs.of_idx[1] = other;
+    units.rigs.slots[1] = other;
     ASSERT_TRUE(units.gof(recipe.tracks_payload(2, 0, 0)));
     SliceRecipe tracks(1, 0);
     tracks.trajectory_flag(false);
@@ -347,7 +347,7 @@ TEST(ParseRigRanges, RigsStayWithinTheMemoryOfTheCaller) {
   for (const std::size_t kept_idx : {7U, 0U}) {
     const auto parse = [&](Memory most) {
       Units units(5, 1, most);
-      units.rigs.of_idx[kept_idx] = rig_of(5, 4);
+      units.rigs.slots[kept_idx] = rig_of(5, 4);
       return units.rig({}, 0);
     };
     const auto too_little = parse(kept + own);
@@ -377,7 +377,7 @@ TEST(ParseRigRanges, GofsStayWithinTheMemoryOfTheCaller) {
        kept + memory_of_tracks(6) + memory_of_adaptive_weights(5)}};
   for (const auto& [payload, bytes] : gofs) {
     Units units(5, 1, 0);
-    units.rigs.of_idx[7] = rig;
+    units.rigs.slots[7] = rig;
     const auto parsed = units.gof(payload);
     ASSERT_FALSE(parsed);
     EXPECT_EQ(parsed.error().code, Errc::kLimitExceeded);

@@ -144,7 +144,7 @@ Result<bool> SkinnedGofParser::tracks(BitReader& r, const GofHeader& gof_header,
   unit_ = Unit::kTracks;
   const std::uint64_t at = r.bit_pos();
   gof_.rig_idx = parse_rig_idx(r);
-  gof_.rig = rigs.of_idx[gof_.rig_idx];
+  gof_.rig = rigs.slots[gof_.rig_idx];
   if (!gof_.rig) r.fail(Errc::kUnsupported, "R-MOD-01", "rig_idx", at);
   if (r.error()) return *r.error();
   load_rig();
