@@ -39,12 +39,12 @@ bool checked_by_decoding(const Finding& finding) {
                                                        "R-IDX-05", "R-IDX-06", "R-MET-03"};
   const bool in_index =
       finding.unit && finding.unit->type_byte == static_cast<std::uint8_t>(UnitType::kGofIndex);
-  const bool of_payload = std::string_view(finding.id).substr(0, 5) == "R-BIT";
+  const bool is_bit_rule = std::string_view(finding.id).substr(0, 5) == "R-BIT";
   // Units that are skipped when positions are decoded.
   const std::string_view topic = std::string_view(finding.id).substr(0, 5);
   if (topic == "R-ATT" || topic == "R-AST") return false;
   return std::find(kUnchecked.begin(), kUnchecked.end(), finding.id) == kUnchecked.end() &&
-         !(in_index && of_payload);
+         !(in_index && is_bit_rule);
 }
 
 class Damage : public testing::TestWithParam<StreamBytes (*)()> {

@@ -19,8 +19,8 @@ bool is_zero(const Component& component) {
 }
 
 template <class T>
-void raise(T& most, std::uint64_t value) {
-  most = std::max(most, static_cast<T>(value));
+void raise(T& max, std::uint64_t value) {
+  max = std::max(max, static_cast<T>(value));
 }
 
 class GofWarnings {
