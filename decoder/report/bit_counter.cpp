@@ -142,11 +142,11 @@ void BitCounter::count(std::size_t part, std::uint64_t bits) {
 void BitCounter::close_unit() {
   const UnitType type{unit_type_};
   if (type == UnitType::kGof || type == UnitType::kRig) {
-    of_rig_ = type == UnitType::kRig;
-    (of_rig_ ? model_bits_ : gof_bits_).emplace_back();
+    in_rig_ = type == UnitType::kRig;
+    (in_rig_ ? model_bits_ : gof_bits_).emplace_back();
   }
   // Slices belong to the GOF or shared rig before them, hashes to the GOF.
-  const bool is_slice = type == UnitType::kSlice && of_rig_;
+  const bool is_slice = type == UnitType::kSlice && in_rig_;
   std::vector<PartSizes>& list = type == UnitType::kRig || is_slice ? model_bits_ : gof_bits_;
   if (type == UnitType::kGof || type == UnitType::kRig || is_slice_type(type) ||
       type == UnitType::kGofHash) {

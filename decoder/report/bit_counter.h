@@ -53,7 +53,7 @@ class BitCounter final : public Trace {
   PartSizes unit_bits_{};  // bits of the current unit
   std::vector<PartSizes> gof_bits_;
   std::vector<PartSizes> model_bits_;
-  bool of_rig_ = false;  // whether the last GOF or shared rig is a shared rig
+  bool in_rig_ = false;  // whether the last GOF or shared rig is a shared rig
 };
 
 }  // namespace rlpc

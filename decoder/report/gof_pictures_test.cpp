@@ -106,12 +106,12 @@ TEST_F(GofPictures, OfLargeMeshesShowTheLargestCoarseMeshThatIsAllowed) {
 }
 
 TEST_F(GofPictures, OfMeshesThatAreLargerStillShowVertices) {
-  const std::uint32_t least = meshes_.size(1).num_triangles;
-  ASSERT_GT(least, 1U);
-  const std::uint32_t most = least - 1;
-  for (const GofPicture& picture : gof_pictures(frame_, most)) {
+  const std::uint32_t min_triangles = meshes_.size(1).num_triangles;
+  ASSERT_GT(min_triangles, 1U);
+  const std::uint32_t max_triangles = min_triangles - 1;
+  for (const GofPicture& picture : gof_pictures(frame_, max_triangles)) {
     EXPECT_NE(note(picture).find("there is no coarse mesh"), std::string::npos);
-    const std::uint32_t every = (kVertices + most - 1) / most;
+    const std::uint32_t every = (kVertices + max_triangles - 1) / max_triangles;
     EXPECT_NE(note(picture).find("One of every " + std::to_string(every)), std::string::npos);
     EXPECT_EQ(count(picture.body, "h0\"/>"), 2 * ((kVertices - 1) / every + 1));
   }

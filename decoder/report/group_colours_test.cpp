@@ -7,13 +7,13 @@
 namespace rlpc {
 namespace {
 
-double least_distance(const std::vector<Colour>& colours) {
-  double least = 1;
+double min_distance(const std::vector<Colour>& colours) {
+  double min = 1;
   for (std::size_t i = 0; i < colours.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)
-      least = std::min(least, colour_distance(colours[i], colours[j]));
+      min = std::min(min, colour_distance(colours[i], colours[j]));
   }
-  return least;
+  return min;
 }
 
 std::vector<std::uint32_t> one_each(std::uint32_t num_groups) {
@@ -27,9 +27,9 @@ TEST(GroupColours, AreAllDifferentUpToThirtySix) {
   for (std::uint32_t a = 0; a < 36; ++a) {
     for (std::uint32_t b = 0; b < a; ++b) all.push_back({a, b, b});
   }
-  EXPECT_GT(least_distance(group_colours(36, one_each(36), {})), 0.06);
-  EXPECT_GT(least_distance(group_colours(36, one_each(36), all)), 0.06);
-  EXPECT_EQ(least_distance(group_colours(37, one_each(37), {})), 0);
+  EXPECT_GT(min_distance(group_colours(36, one_each(36), {})), 0.06);
+  EXPECT_GT(min_distance(group_colours(36, one_each(36), all)), 0.06);
+  EXPECT_EQ(min_distance(group_colours(37, one_each(37), {})), 0);
 }
 
 TEST(GroupColours, AreDistinctInNeighbours) {

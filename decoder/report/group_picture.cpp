@@ -37,12 +37,12 @@ class Drawing {
     }
     const Point centre{(corners[0][0] + corners[1][0] + corners[2][0]) / 3,
                        (corners[0][1] + corners[1][1] + corners[2][1]) / 3, nearness / 3};
-    const std::array<std::uint32_t, 3> of_corner{a, b, c};
+    const std::array<std::uint32_t, 3> corner_vertices{a, b, c};
     std::string cells;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::array<Point, 4> cell{corners[k], middle_of(corners[k], corners[(k + 1) % 3]),
                                       centre, middle_of(corners[k], corners[(k + 2) % 3])};
-      cells += piece(of_corner[k], shade, outline(cell));
+      cells += piece(corner_vertices[k], shade, outline(cell));
     }
     shapes_.push_back({nearness, std::move(cells)});
   }

@@ -39,8 +39,8 @@ MeshView::MeshView(std::uint32_t num_vertices, std::uint32_t num_frames,
   const std::size_t overhead_bytes = kBytesPerVertex * num_vertices;
   const std::size_t mesh_bytes = 12 * triangles.size();
   if (mesh_bytes + overhead_bytes > max_bytes) return;
-  const std::size_t most = (max_bytes - mesh_bytes) / overhead_bytes;
-  stride_ = static_cast<std::uint32_t>((num_frames + most - 1) / most);
+  const std::size_t max_frames = (max_bytes - mesh_bytes) / overhead_bytes;
+  stride_ = static_cast<std::uint32_t>((num_frames + max_frames - 1) / max_frames);
 }
 
 void MeshView::add_frame(std::span<const float> original, std::span<const float> decoded) {

@@ -61,9 +61,9 @@ class MeshView {
 
   vertexNormals(xyz) {
     const normals = new Float32Array(xyz.length);
-    const ofTriangles = this.triangleNormals(xyz);
+    const triangleNormals = this.triangleNormals(xyz);
     this.triangles.forEach((vertex, t) => {
-      for (let c = 0; c < 3; ++c) normals[3 * vertex + c] += ofTriangles[t - t % 3 + c];
+      for (let c = 0; c < 3; ++c) normals[3 * vertex + c] += triangleNormals[t - t % 3 + c];
     });
     return normals;
   }

@@ -157,9 +157,9 @@ TEST(Report, PicturesOfCoarseMeshesSpanTheSizesThatFit) {
     EXPECT_GT(more, 3 * fewer);
     EXPECT_LT(more, 5 * fewer);
   }
-  const std::uint32_t most = meshes.size(4).num_triangles;
-  EXPECT_EQ(layers_of_pictures(meshes, most).back(), 4U);
-  EXPECT_EQ(layers_of_pictures(meshes, most - 1).back(), 3U);
+  const std::uint32_t num_triangles = meshes.size(4).num_triangles;
+  EXPECT_EQ(layers_of_pictures(meshes, num_triangles).back(), 4U);
+  EXPECT_EQ(layers_of_pictures(meshes, num_triangles - 1).back(), 3U);
   EXPECT_TRUE(layers_of_pictures(meshes, 0).empty());
   EXPECT_TRUE(layers_of_pictures(CoarseMeshes(3, {}), 10).empty()) << "points";
 }

@@ -33,7 +33,7 @@ double Axis::at(double value) const {
   return first_pixel_ + share * (last_pixel_ - first_pixel_);
 }
 
-std::vector<double> Axis::ticks(int most, double least_step) const {
+std::vector<double> Axis::ticks(int num_ticks, double min_step) const {
   std::vector<double> values;
   const auto add = [&](double value) {
     if (is_within(value, low_, high_)) values.push_back(value);
@@ -45,7 +45,7 @@ std::vector<double> Axis::ticks(int most, double least_step) const {
     }
     return values;
   }
-  const double rough = std::max((high_ - low_) / most, least_step);
+  const double rough = std::max((high_ - low_) / num_ticks, min_step);
   const double unit = std::pow(10.0, std::floor(std::log10(rough)));
   double step = 10 * unit;
   for (const double m : {5.0, 2.0, 1.0}) {

@@ -14,9 +14,9 @@ class Axis {
   Axis(double low, double high, bool is_log, double first_pixel, double last_pixel);
 
   double at(double value) const;
-  // Returns the ticks: 1, 2 and 5 of each decade of a logarithmic axis; otherwise about `most`
-  // round numbers, at least `least_step` apart.
-  std::vector<double> ticks(int most, double least_step = 0) const;
+  // Returns the ticks: 1, 2 and 5 of each decade of a logarithmic axis; otherwise about
+  // num_ticks round numbers, at least min_step apart.
+  std::vector<double> ticks(int num_ticks, double min_step = 0) const;
 
  private:
   double low_;

@@ -23,7 +23,7 @@ void FrameBand::fill(const GofRecon& recon, std::uint32_t f, std::size_t frame_s
   count_ = recon.is_ordered() ? 1 : std::min(next_count_, there);
   const std::uint32_t first = is_back_ ? f + 1 - count_ : f;
   first_ = first;
-  next_count_ = std::min(2 * next_count_, most_);
+  next_count_ = std::min(2 * next_count_, max_count_);
   positions_.resize(count_ * frame_size);
   // No loop on threads, which would allocate memory.
   if (count_ <= kBandFrames) return recon.frames(first, count_, positions_);

@@ -21,7 +21,7 @@ enum class Direction : std::uint8_t { kForward, kBack, kElsewhere };
 class FrameBand {
  public:
   explicit FrameBand(std::uint32_t threads)
-      : most_(kBandFrames * threads), next_count_(most_) {}
+      : max_count_(kBandFrames * threads), next_count_(max_count_) {}
 
   // Drops the frames held: another GOF follows.
   void clear() { count_ = 0; }
@@ -34,7 +34,7 @@ class FrameBand {
  private:
   void fill(const GofRecon& recon, std::uint32_t f, std::size_t frame_size);
 
-  std::uint32_t most_;
+  std::uint32_t max_count_;
   std::uint32_t next_count_;
   bool is_back_ = false;
   std::uint32_t first_ = 0;

@@ -67,10 +67,10 @@ void GofSource::leave() {
 }
 
 void GofSource::count_cached_bytes() {
-  const std::uint64_t of_frames = gof_ ? gof_->gof.frame_bytes : 0;
+  const std::uint64_t frame_bytes = gof_ ? gof_->gof.frame_bytes : 0;
   cache_.set_max_bytes(options_.max_cached_bytes -
-                       std::min(options_.max_cached_bytes, of_frames));
-  stream_.set_cached_bytes(cache_.bytes() + of_frames);
+                       std::min(options_.max_cached_bytes, frame_bytes));
+  stream_.set_cached_bytes(cache_.bytes() + frame_bytes);
 }
 
 void GofSource::enter(std::unique_ptr<LoadedGof> gof) {

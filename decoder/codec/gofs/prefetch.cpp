@@ -21,7 +21,7 @@ bool is_done(const std::future<bool>& done) {
 void Prefetch::drop(List& from, List::iterator which) {
   dropped_.splice(dropped_.end(), from, which);
   dropped_.remove_if([](const Ahead& ahead) { return is_done(ahead.done); });
-  while (dropped_.size() > most_asked_) dropped_.pop_front();
+  while (dropped_.size() > max_asked_) dropped_.pop_front();
 }
 
 void Prefetch::clear() {
@@ -94,7 +94,7 @@ bool Prefetch::has_asked(std::uint32_t frame) const {
 
 void Prefetch::ask(const GofPlace& place, std::uint32_t frame) {
   if (has_asked(frame)) return;
-  while (asked_.size() >= most_asked_) drop(asked_, asked_.begin());
+  while (asked_.size() >= max_asked_) drop(asked_, asked_.begin());
   auto ahead = collect_at(place);
   if (!ahead) return;
   ahead->first_wanted = frame - place.first_frame;

@@ -26,18 +26,17 @@ class Prefetch {
   };
 
   // Stream, rigs and threads must outlive it. threads: for loops within a GOF.
-  // max_memory_bytes: limit per GOF; max_frame_bytes: see prepare(); most_asked: maximum number
+  // max_memory_bytes: limit per GOF; max_frame_bytes: see prepare(); max_asked: maximum number
   // of requested GOFs that are kept.
   Prefetch(StreamReader& stream, RigRecons& rigs, ThreadPool& threads,
-           std::uint64_t max_memory_bytes, std::uint64_t max_frame_bytes,
-           std::size_t most_asked)
+           std::uint64_t max_memory_bytes, std::uint64_t max_frame_bytes, std::size_t max_asked)
       : stream_(stream),
         rigs_(rigs),
         threads_(threads),
         cut_(stream.access_units().cut()),
         max_memory_bytes_(max_memory_bytes),
         max_frame_bytes_(max_frame_bytes),
-        most_asked_(most_asked) {}
+        max_asked_(max_asked) {}
 
   // Keeps up to `count` GOFs ready or in progress from a byte offset on; the first one begins
   // with first_frame. Drops earlier ones.
@@ -103,7 +102,7 @@ class Prefetch {
   const SliceCut cut_;  // a copy: the stream's may change while threads parse
   std::uint64_t max_memory_bytes_;
   std::uint64_t max_frame_bytes_;
-  std::size_t most_asked_;
+  std::size_t max_asked_;
   Slots slots_;   // rigs alive after the last of gofs_
   List gofs_;     // GOFs that follow in the stream
   List asked_;    // GOFs requested

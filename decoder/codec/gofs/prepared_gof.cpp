@@ -23,11 +23,11 @@ PreparedGof prepare(AccessUnit access_unit, const StreamContext& context, RigRec
     gof.memory_bytes = decoder.memory_of_gof(g, context.header);
   });
   if (gof.recon->is_ordered()) {
-    const std::uint64_t of_frame = 12 * std::uint64_t{context.header.num_vertices};
-    const std::uint64_t most =
-        std::min<std::uint64_t>(gof.header.num_frames, max_frame_bytes / of_frame);
-    gof.recon->keep_frames(static_cast<std::uint32_t>(most));
-    gof.frame_bytes = most * of_frame;
+    const std::uint64_t bytes_per_frame = 12 * std::uint64_t{context.header.num_vertices};
+    const std::uint64_t max_frames =
+        std::min<std::uint64_t>(gof.header.num_frames, max_frame_bytes / bytes_per_frame);
+    gof.recon->keep_frames(static_cast<std::uint32_t>(max_frames));
+    gof.frame_bytes = max_frames * bytes_per_frame;
     gof.memory_bytes += gof.frame_bytes;
   }
   return gof;

@@ -12,11 +12,11 @@ namespace rlpc {
 // Memory of a stream without GOFs: connectivity, topology, layers (Main and High profile), the
 // order of rest positions (High profile), and frames_held frames.
 inline std::uint64_t memory_of_stream(const SequenceHeader& header, std::uint32_t frames_held) {
-  const std::uint64_t of_layers = header.has_skinned_gofs() ? 300 : 0;
-  const std::uint64_t of_rest_order = header.profile_idc >= kProfileHigh ? 200 : 0;
-  const std::uint64_t of_vertex =
-      100 + of_layers + of_rest_order + std::uint64_t{12} * frames_held;
-  return header.num_vertices * of_vertex + std::uint64_t{header.num_triangles} * 120;
+  const std::uint64_t layer_bytes = header.has_skinned_gofs() ? 300 : 0;
+  const std::uint64_t rest_order_bytes = header.profile_idc >= kProfileHigh ? 200 : 0;
+  const std::uint64_t vertex_bytes =
+      100 + layer_bytes + rest_order_bytes + std::uint64_t{12} * frames_held;
+  return header.num_vertices * vertex_bytes + std::uint64_t{header.num_triangles} * 120;
 }
 
 // Additional memory of a coarse mesh (8.9.8): layers and the triangles of all coarse meshes

@@ -69,14 +69,14 @@ Result<bool> AccessUnitReader::is_dropped(const UnitHeader& unit, Parser& parser
 template <class Units>
 Result<bool> AccessUnitReader::read_units(const UnitHeader& first, const RigSlots& rigs,
                                           Units& object) {
-  const std::uint64_t of_rigs = memory_of_rigs(rigs);
+  const std::uint64_t rig_bytes = memory_of_rigs(rigs);
   UnitCursor cursor(units_, first);
   for (;;) {
     const UnitHeader& unit = cursor.unit();
     const auto dropped = is_dropped(unit, object.parser);
     if (!dropped) return dropped.error();
     if (!*dropped) {
-      const auto bytes = payload(unit, std::max(of_rigs, object.parser.memory_bytes()));
+      const auto bytes = payload(unit, std::max(rig_bytes, object.parser.memory_bytes()));
       if (!bytes) return bytes.error();
       BitReader r = units_.bits(unit, *bytes);
       if (auto ok = object.parse(r, unit, rigs); !ok) return ok;
@@ -90,9 +90,9 @@ Result<bool> AccessUnitReader::read_units(const UnitHeader& first, const RigSlot
 template <class Units>
 Result<bool> AccessUnitReader::parse_units(const Vector<RawUnit>& raw, const RigSlots& rigs,
                                            const MemoryLimit& memory, Units& object) const {
-  const std::uint64_t of_rigs = memory_of_rigs(rigs);
+  const std::uint64_t rig_bytes = memory_of_rigs(rigs);
   for (const auto& [unit, payload] : raw) {
-    const std::uint64_t taken_bytes = std::max(of_rigs, object.parser.memory_bytes());
+    const std::uint64_t taken_bytes = std::max(rig_bytes, object.parser.memory_bytes());
     if (auto ok = check_fits(unit, taken_bytes, memory); !ok) return ok;
     BitReader r = units_.bits(unit, payload);
     if (auto ok = object.parse(r, unit, rigs); !ok) return ok;

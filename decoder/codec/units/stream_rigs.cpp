@@ -39,9 +39,9 @@ void StreamRigs::add(std::uint64_t offset, std::uint64_t end, const ParsedRig& p
 
 Vector<std::uint64_t> StreamRigs::alive_at(std::uint64_t offset) const {
   Vector<std::uint64_t> alive;
-  for (const Set<std::uint64_t>& of_idx : offsets_) {
-    const auto after = of_idx.lower_bound(offset);
-    if (after != of_idx.begin()) alive.push_back(*std::prev(after));
+  for (const Set<std::uint64_t>& slot_offsets : offsets_) {
+    const auto after = slot_offsets.lower_bound(offset);
+    if (after != slot_offsets.begin()) alive.push_back(*std::prev(after));
   }
   std::sort(alive.begin(), alive.end());
   return alive;

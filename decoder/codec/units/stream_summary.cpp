@@ -34,14 +34,14 @@ class Summariser {
     rig->bytes = parsed.bytes;
     rig->slices = parsed.slices;
     add_rig_figures(*parsed.rig, *rig);
-    of_idx_[parsed.rig_idx] = rig;
+    rigs_by_idx_[parsed.rig_idx] = rig;
     summary_.rigs.push_back(rig);
   }
   void add(const AccessUnit& access_unit) {
     GofSummary gof = summary_of(access_unit);
     const auto* skinned = std::get_if<SkinnedGof>(&access_unit.gof);
     if (skinned != nullptr && skinned->rig) {
-      const auto& rig = of_idx_[skinned->rig_idx];
+      const auto& rig = rigs_by_idx_[skinned->rig_idx];
       ++rig->num_gofs;
       gof.rig = rig;
     }
@@ -51,7 +51,7 @@ class Summariser {
 
  private:
   StreamSummary summary_;
-  std::array<std::shared_ptr<RigSummary>, kMaxRigs> of_idx_;
+  std::array<std::shared_ptr<RigSummary>, kMaxRigs> rigs_by_idx_;
 };
 
 }  // namespace

@@ -176,16 +176,16 @@ TEST(UnitReader, PayloadStartGivesAtMostThePayload) {
 
 TEST(UnitReader, TakesNoMemoryForLargerPayloadsThanAllowed) {
   const Bytes stream = joined({kHeader, kUnit});
-  for (const std::uint64_t most : {0U, 3U, 4U}) {
-    UnitReader reader(memory_source(Bytes(stream)), nullptr, most);
+  for (const std::uint64_t max_bytes : {0U, 3U, 4U}) {
+    UnitReader reader(memory_source(Bytes(stream)), nullptr, max_bytes);
     const auto unit = reader.header_at(10);
     ASSERT_TRUE(unit);
-    if (most < 4) {
+    if (max_bytes < 4) {
       expect_error(reader.payload(*unit), Errc::kLimitExceeded, "", "unit_size", 88);
     } else {
       EXPECT_TRUE(reader.payload(*unit));
     }
-    EXPECT_TRUE(reader.skip(*unit)) << most;
+    EXPECT_TRUE(reader.skip(*unit)) << max_bytes;
   }
 }
 

@@ -25,12 +25,12 @@ std::unique_ptr<GofRecon> SkinnedDecoder::make_recon(const SkinnedGof& gof,
 std::uint64_t SkinnedDecoder::memory_of_gof(const SkinnedGof& gof,
                                             const SequenceHeader& header) {
   const std::uint64_t factors = gof.trajectories.size();
-  const std::uint64_t of_tracks =
+  const std::uint64_t track_bytes =
       memory_of_tracks(std::uint64_t{3} * gof.num_frames * (factors + 4 * gof.bones.size())) +
       memory_of_trajectories(factors);
-  const std::uint64_t of_factors = memory_of_spatial(header.num_vertices, factors);
-  if (gof.rig) return of_tracks + of_factors;
-  return of_tracks + of_factors + memory_of_spatial(header.num_vertices, kRestFactors) +
+  const std::uint64_t factor_bytes = memory_of_spatial(header.num_vertices, factors);
+  if (gof.rig) return track_bytes + factor_bytes;
+  return track_bytes + factor_bytes + memory_of_spatial(header.num_vertices, kRestFactors) +
          memory_of_vertices(header.num_vertices, gof.rest.order_flag);
 }
 

@@ -25,14 +25,14 @@ String parse_name(BitReader& r) {
 
 // F.2.2 value_scale( )
 void parse_scale(BitReader& r, AttributeHeader& header) {
-  constexpr std::int64_t kMostOrigin = 1 << 24;
+  constexpr std::int64_t kMaxOrigin = 1 << 24;
   if (header.kind == ValueKind::kIntegers) {
     header.scale = static_cast<ValueScale>(r.u(2, "value_scale_idc", {0, 2}, "R-ATT-04"));
   }
   if (header.scale != ValueScale::kGrid) return;
   header.log2_step = r.se("value_log2_step", {-126, 127}, "R-ATT-04");
   for (std::uint32_t c = 0; c < header.num_components; ++c) {
-    header.origin[c] = r.se("value_origin", {-kMostOrigin, kMostOrigin}, "R-ATT-04");
+    header.origin[c] = r.se("value_origin", {-kMaxOrigin, kMaxOrigin}, "R-ATT-04");
   }
 }
 
@@ -51,8 +51,8 @@ AttributeHeader parse_header(BitReader& r) {
     header.num_components = r.u(2, "num_components_minus1") + 1;
   }
   if (has_bits) {
-    const std::int64_t least = header.kind == ValueKind::kUnitVectors ? 1 : 0;
-    header.value_bits = r.u(4, "value_bits_minus1", {least, 15}, "R-ATT-04") + 1;
+    const std::int64_t min_minus1 = header.kind == ValueKind::kUnitVectors ? 1 : 0;
+    header.value_bits = r.u(4, "value_bits_minus1", {min_minus1, 15}, "R-ATT-04") + 1;
   }
   parse_scale(r, header);
   if (!is_triangle && header.kind != ValueKind::kSmoothing) {

@@ -10,7 +10,7 @@ namespace rlpc {
 // 6.16 asset( )
 Result<String> parse_asset(BitReader& r, const MemoryLimit& memory) {
   constexpr std::uint32_t kGlb = 0;
-  constexpr std::uint64_t kMostInflation = 1032;  // largest ratio of deflate
+  constexpr std::uint64_t kMaxInflation = 1032;  // largest ratio of deflate
   const std::uint32_t format = r.u(8, "asset_format");
   const std::uint64_t at = r.bit_pos();
   const std::uint32_t size = r.u(32, "asset_size");
@@ -21,7 +21,7 @@ Result<String> parse_asset(BitReader& r, const MemoryLimit& memory) {
     r.fail(Errc::kLimitExceeded, "", "asset_size", at, needed);
     return *r.error();
   }
-  const bool is_possible = size <= kMostInflation * (deflated.size() + 1);
+  const bool is_possible = size <= kMaxInflation * (deflated.size() + 1);
   auto bytes = is_possible ? inflate_exactly(deflated, size) : std::nullopt;
   if (!bytes) {
     r.fail(Errc::kInvalid, "R-AST-01", "asset_size", at);

@@ -36,9 +36,9 @@ Result<Vector<Clip>> parse_clip_table(BitReader& r, std::uint32_t num_frames,
   for (std::uint32_t i = 0; i < count && !r.error(); ++i) {
     Clip clip;
     const std::int64_t first = end + r.se("clip_gap", {-end, frames - 1 - end}, "R-CLP-02");
-    const std::int64_t most = frames - first - 1;
+    const std::int64_t max_minus1 = frames - first - 1;
     clip.first_frame = static_cast<std::uint32_t>(first);
-    clip.num_frames = r.ue("clip_num_frames_minus1", {0, most}, "R-CLP-02") + 1;
+    clip.num_frames = r.ue("clip_num_frames_minus1", {0, max_minus1}, "R-CLP-02") + 1;
     clip.name = parse_clip_name(r);
     end = first + clip.num_frames;
     clips.push_back(std::move(clip));

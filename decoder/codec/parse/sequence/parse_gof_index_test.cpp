@@ -69,10 +69,10 @@ TEST(ParseGofIndex, EveryProperPrefixFails) {
 }
 
 TEST(ParseGofIndex, OffsetsBeyond32BitsAddUp) {
-  const std::uint32_t most = 0xFFFFFFFE;
-  const Index index = parse(payload_of(2, {{0, most}, {0, most}, {0, most}}), 3);
+  const std::uint32_t max_size = 0xFFFFFFFE;
+  const Index index = parse(payload_of(2, {{0, max_size}, {0, max_size}, {0, max_size}}), 3);
   ASSERT_TRUE(index);
-  EXPECT_EQ(index->gofs[2].offset, 45 + 2 * std::uint64_t{most});
+  EXPECT_EQ(index->gofs[2].offset, 45 + 2 * std::uint64_t{max_size});
 }
 
 TEST(ParseGofIndex, FramesOfTheGofsAreThoseOfTheSequence) {

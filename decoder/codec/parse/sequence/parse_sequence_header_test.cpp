@@ -134,10 +134,10 @@ TEST(ParseSequenceHeader, LevelsBoundVerticesAndTriangles) {
     e.level_idc = level_idc;
     e.num_vertices_minus1 = level.max_vertices - 1;
     e.num_triangles = level.max_triangles;
-    const auto most = parse(e.payload());
-    ASSERT_TRUE(most);
-    EXPECT_EQ(most->num_vertices, level.max_vertices);
-    EXPECT_EQ(most->num_triangles, level.max_triangles);
+    const auto largest = parse(e.payload());
+    ASSERT_TRUE(largest);
+    EXPECT_EQ(largest->num_vertices, level.max_vertices);
+    EXPECT_EQ(largest->num_triangles, level.max_triangles);
     ++e.num_triangles;
     expect_error(e.payload(), Errc::kInvalid, "R-LVL-02", "num_triangles");
     ++e.num_vertices_minus1;

@@ -292,8 +292,9 @@ void InterGofParser::frame_section(BitReader& r, const SliceEntry& unit,
     InterFrame& frame = frame_at(place);
     const std::uint32_t num_patches = place > 0 ? gof_.num_patches : 0;
     if (unit.layer_group_idx == 0) {
-      const std::uint64_t most = memory_of_frame(num_vertices, 3 * num_vertices, num_patches);
-      if (!has_memory(r, most + r.remaining_bytes().size(), "frame_section", at)) return;
+      const std::uint64_t max_bytes =
+          memory_of_frame(num_vertices, 3 * num_vertices, num_patches);
+      if (!has_memory(r, max_bytes + r.remaining_bytes().size(), "frame_section", at)) return;
       frame.residual = CompactResiduals(3 * std::size_t{header_.num_vertices});
       frame.expected.assign(header_.num_vertices, 0);
       contexts_->start_frame(place, (*order_)[place].depth);

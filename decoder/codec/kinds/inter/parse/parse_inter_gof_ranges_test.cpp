@@ -55,7 +55,7 @@ struct Bound {
   const char* rule;
   const char* element;
   std::uint64_t bit_pos;
-  std::uint32_t most;
+  std::uint32_t max;
   std::function<void(InterGofRecipe&, std::uint32_t)> set;
 };
 
@@ -110,14 +110,14 @@ TEST(ParseInterGofRanges, ElementsAreTakenUpToTheirBoundsAndNotBeyond) {
   for (const Bound& bound : bounds) {
     SCOPED_TRACE(bound.element);
     for (const std::uint32_t less : {1U, 0U}) {
-      if (bound.most < less) continue;
+      if (bound.max < less) continue;
       InterGofRecipe recipe;
-      bound.set(recipe, bound.most - less);
+      bound.set(recipe, bound.max - less);
       const auto ok = parse(recipe);
       EXPECT_TRUE(ok) << ok.error().rule << ' ' << ok.error().element;
     }
     InterGofRecipe recipe;
-    bound.set(recipe, bound.most + 1);
+    bound.set(recipe, bound.max + 1);
     expect_invalid_at(parse(recipe), bound.rule, bound.element, bound.bit_pos);
   }
 }
@@ -307,9 +307,9 @@ TEST(ParseFrameUnitRanges, FramesOfAUnitAreThoseOfTheGof) {
   EXPECT_TRUE(all.parse(all.unit(0, 5), 5));
 }
 
-InterGofRecipe with_earlier(std::uint32_t most) {
+InterGofRecipe with_earlier(std::uint32_t max_distance) {
   InterGofRecipe recipe;
-  recipe.max_earlier_distance = most;
+  recipe.max_earlier_distance = max_distance;
   return recipe;
 }
 
@@ -393,20 +393,20 @@ TEST(ParseFrameUnitRanges, HashesTakeAllValues) {
 
 // All residuals of a frame could be large.
 TEST(ParseFrameUnitRanges, ResidualsStayWithinTheMemoryOfTheCaller) {
-  const std::uint64_t of_gof = Frames{InterGofRecipe{}}.units().parser().memory_bytes();
-  const std::uint64_t of_frame = memory_of_frame(9, 27, 0);
+  const std::uint64_t gof_bytes = Frames{InterGofRecipe{}}.units().parser().memory_bytes();
+  const std::uint64_t frame_bytes = memory_of_frame(9, 27, 0);
   const auto parse = [](std::uint64_t bytes) {
     Frames frames(InterGofRecipe{}, false, bytes);
     return frames.parse(frames.unit(0), 1);
   };
-  const auto too_little = parse(of_gof + of_frame);
+  const auto too_little = parse(gof_bytes + frame_bytes);
   ASSERT_FALSE(too_little);
   EXPECT_EQ(too_little.error().code, Errc::kLimitExceeded);
   EXPECT_STREQ(too_little.error().element, "frame_section");
   EXPECT_EQ(too_little.error().bit_pos, kPayloadBitPos + 8);
   const std::uint64_t needed = too_little.error().needed_bytes;
-  EXPECT_GT(needed, of_gof + of_frame);
-  EXPECT_LT(needed, of_gof + of_frame + 8);  // the section, of zeros
+  EXPECT_GT(needed, gof_bytes + frame_bytes);
+  EXPECT_LT(needed, gof_bytes + frame_bytes + 8);  // the section, of zeros
   EXPECT_TRUE(parse(needed));
   EXPECT_FALSE(parse(needed - 1));
 }

@@ -38,8 +38,8 @@ void parse_inter_settings(BitReader& r, const SequenceHeader& header, std::uint3
   parse_weights(r, header, settings);
   settings.frame_hash_flag = r.flag("frame_hash_flag");
   const std::uint64_t values = 3 * std::uint64_t{header.num_vertices};
-  const auto most = static_cast<std::int64_t>(header.level().max_gof_factors / values);
-  settings.max_earlier_distance = r.ue("max_earlier_distance", {0, most}, "R-LVL-05");
+  const auto max_distance = static_cast<std::int64_t>(header.level().max_gof_factors / values);
+  settings.max_earlier_distance = r.ue("max_earlier_distance", {0, max_distance}, "R-LVL-05");
   settings.layer_group_size = parse_layer_groups(r, num_layers);
   if (r.stopped()) return;
   settings.layer_step.assign(num_layers, kMaxLayerStep);
@@ -69,10 +69,10 @@ FrameUnitStart parse_frame_unit_header(BitReader& r, const SequenceHeader& heade
   const std::int64_t num_groups = counts.layer_groups;
   start.layer_group_idx = r.ue("layer_group_idx", {0, num_groups - 1}, "R-FRM-02");
   if (num_groups > 1) return start;
-  const std::int64_t most = std::int64_t{counts.frames} - 1;
+  const std::int64_t max_minus1 = std::int64_t{counts.frames} - 1;
   const std::uint64_t at = r.bit_pos();
   start.unit_frames_minus1 = {"unit_frames_minus1", 0, at};
-  start.unit_frames_minus1.value = r.ue("unit_frames_minus1", {0, most}, "R-FRM-09");
+  start.unit_frames_minus1.value = r.ue("unit_frames_minus1", {0, max_minus1}, "R-FRM-09");
   return start;
 }
 

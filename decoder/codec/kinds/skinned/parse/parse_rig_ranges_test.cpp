@@ -138,14 +138,14 @@ TEST(ParseRigRanges, AdaptiveValuesAreBoundedByTheLevel) {
 }
 
 TEST(ParseRigRanges, LocalGroupsAreWithinWhatTheRigLeaves) {
-  for (const std::uint32_t of_rig : {0U, 1U, 254U, 255U}) {
+  for (const std::uint32_t rig_groups : {0U, 1U, 254U, 255U}) {
     Units units(2);
     SkinnedGofRecipe recipe;
-    recipe.num_component_groups = of_rig;
+    recipe.num_component_groups = rig_groups;
     ASSERT_TRUE(units.rig(recipe, 3));
     units.keep();
-    EXPECT_TRUE(units.gof(recipe.tracks_payload(2, 3, 255 - of_rig)));
-    expect_invalid(units.gof(recipe.tracks_payload(2, 3, 256 - of_rig)), "R-BON-02",
+    EXPECT_TRUE(units.gof(recipe.tracks_payload(2, 3, 255 - rig_groups)));
+    expect_invalid(units.gof(recipe.tracks_payload(2, 3, 256 - rig_groups)), "R-BON-02",
                    "num_local_groups");
   }
 }
@@ -345,8 +345,8 @@ TEST(ParseRigRanges, RigsStayWithinTheMemoryOfTheCaller) {
   const Memory kept = memory_of_rig(*rig_of(5, 4));
   const Memory own = memory_of_vertices(5, false) + memory_of_spatial(5, 3);
   for (const std::size_t kept_idx : {7U, 0U}) {
-    const auto parse = [&](Memory most) {
-      Units units(5, 1, most);
+    const auto parse = [&](Memory max_bytes) {
+      Units units(5, 1, max_bytes);
       units.rigs.slots[kept_idx] = rig_of(5, 4);
       return units.rig({}, 0);
     };
@@ -368,10 +368,10 @@ TEST(ParseRigRanges, GofsStayWithinTheMemoryOfTheCaller) {
   const auto rig = rig_of(5, 4);
   rig->bones.resize(1);
   const Memory kept = memory_of_rig(*rig);
-  const Memory of_vertices = memory_of_vertices(5, false) + memory_of_spatial(5, 3);
+  const Memory vertex_bytes = memory_of_vertices(5, false) + memory_of_spatial(5, 3);
   const SkinnedGofRecipe recipe;
   const std::pair<Bytes, Memory> gofs[] = {
-      {gof_of_bones(), kept + of_vertices + memory_of_tracks(6)},
+      {gof_of_bones(), kept + vertex_bytes + memory_of_tracks(6)},
       {recipe.tracks_payload(2, 7, 0), kept + memory_of_tracks(6)},
       {recipe.tracks_payload(2, 7, 1),
        kept + memory_of_tracks(6) + memory_of_adaptive_weights(5)}};

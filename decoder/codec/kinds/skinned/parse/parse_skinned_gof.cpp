@@ -25,9 +25,9 @@ static_assert(std::all_of(kLevels.begin(), kLevels.end(), [](const Level& level)
 // Checks NumFactors and the memory.
 void SkinnedGofParser::count_factors(SectionReader& section, const Factors& factors,
                                      const char* element) {
-  num_factors_ += factors.spatial * header_.num_vertices + factors.of_tracks;
+  num_factors_ += factors.spatial * header_.num_vertices + factors.track_values;
   memory_bytes_ += memory_of_spatial(header_.num_vertices, factors.spatial) +
-                   memory_of_tracks(factors.of_tracks);
+                   memory_of_tracks(factors.track_values);
   if (section.failed()) return;
   if (num_factors_ > header_.level().max_gof_factors) section.fail("R-LVL-05", element);
   section.check_memory(memory_, memory_bytes_, element);

@@ -76,7 +76,7 @@ class SkinnedGofParser final : public GofParser {
   // before a section is parsed that adds to them.
   struct Factors {
     std::uint64_t spatial = 0;
-    std::uint64_t of_tracks = 0;
+    std::uint64_t track_values = 0;
   };
   std::uint64_t factors_of_bones() const {
     return 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames;

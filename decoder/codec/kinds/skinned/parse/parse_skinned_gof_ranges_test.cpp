@@ -41,7 +41,7 @@ SkinnedGofRecipe layered() {
 struct Bound {
   const char* rule;
   const char* element;
-  std::uint32_t most;
+  std::uint32_t max;
   std::function<void(SkinnedGofRecipe&, std::uint32_t)> set;
 };
 
@@ -98,10 +98,10 @@ TEST(ParseSkinnedGofRanges, ElementsAreTakenUpToTheirBoundsAndNotBeyond) {
   };
   for (const Bound& bound : bounds) {
     SkinnedGofRecipe recipe;
-    bound.set(recipe, bound.most);
+    bound.set(recipe, bound.max);
     EXPECT_TRUE(Gof(recipe).parsed) << bound.element;
     recipe = {};
-    bound.set(recipe, bound.most + 1);
+    bound.set(recipe, bound.max + 1);
     expect_invalid(Gof(recipe).parsed, bound.rule, bound.element);
   }
 }

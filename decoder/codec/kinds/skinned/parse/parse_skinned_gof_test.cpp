@@ -298,8 +298,8 @@ TEST(ParseSkinnedGof, FactorsStayWithinTheMemoryOfTheCaller) {
                         {5, kBones + 3 * kTrajectory, "num_group_components_minus1"}};
   for (const auto& [unit, bytes, element] : cases) {
     SCOPED_TRACE(unit);
-    const auto parse = [&, last = unit](std::uint64_t most) {
-      SkinnedGofUnits units = legal_units(most);
+    const auto parse = [&, last = unit](std::uint64_t max_bytes) {
+      SkinnedGofUnits units = legal_units(max_bytes);
       Result<bool> parsed = units.gof(kGof);
       for (std::size_t i = 0; parsed && i < last; ++i) parsed = units.slice(kSlices[i]);
       return parsed;

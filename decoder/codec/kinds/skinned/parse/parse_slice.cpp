@@ -122,8 +122,8 @@ void SkinnedGofParser::SliceParser::temporal_slice() {
       if (failed()) return;
     }
   } else {
-    const FactorGroup of_group = parser_.tracks_of(group_);
-    for (std::size_t l = of_group.first; l < of_group.end && !failed(); ++l) {
+    const FactorGroup tracks = parser_.tracks_of(group_);
+    for (std::size_t l = tracks.first; l < tracks.end && !failed(); ++l) {
       Trajectory& trajectory = gof_.trajectories[l - kRestFactors];
       if (trajectory.trajectory_flag) trajectory_residuals(trajectory);
       section_.check_overrun("trajectory_residual");
@@ -189,8 +189,8 @@ void SkinnedGofParser::SliceParser::spatial_residuals(std::uint32_t v) {
   contexts.start(v);
   struct Context {
     VertexContexts& contexts;
-    VertexModels& of_activity;
-    ResidualModels& models() { return of_activity[contexts.activity()]; }
+    VertexModels& activity_models;
+    ResidualModels& models() { return activity_models[contexts.activity()]; }
     std::uint32_t expected() const { return contexts.expected(); }
     void update(std::int32_t value) { contexts.update(value); }
   };
