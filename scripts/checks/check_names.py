@@ -2,8 +2,8 @@
 """Identifiers are nouns or verbs of the field, not the rest of a sentence.
 
 In C++, C, JavaScript and Python, no identifier is called of_frame, most, least_bytes, kOfGof or
-kMostBytes: these are frame_bytes, max, min_bytes, kGofBytes and kMaxBytes. KEPT lists exceptions,
-and ROOMS folders with names of an earlier time.
+kMostBytes: these are frame_bytes, max, min_bytes, kGofBytes and kMaxBytes. KEPT and KEPT_IN list
+exceptions.
 """
 
 import io
@@ -17,10 +17,6 @@ import cpp_source
 # Members of the released C interface; a term of the field; statistics that a file of rlpccov names.
 KEPT = {"least_level", "least_squares"}
 KEPT_IN = {"conformance/rlpccov": {"least"}}
-ROOMS = ("common/codec/kinds", "conformance/rlpcval", "decoder/codec/gofs", "decoder/codec/kinds",
-         "decoder/codec/parse", "decoder/codec/units", "decoder/report")
-# Names that ROOMS declare or use, too.
-SHARED = {"most_of", "of_entries", "of_idx", "of_output"}
 
 _SUFFIXES = (".c", ".h", ".cpp", ".js", ".mjs", ".ts")
 _NAME = re.compile(r"\b(?:(?:of|most|least)_\w*|(?:of|most|least)[A-Z]\w*|most|least"
@@ -47,7 +43,7 @@ def names_in(path, text):
 
 def kept(folder):
     rooms = [names for room, names in KEPT_IN.items() if folder.startswith(room)]
-    return KEPT.union(SHARED, *rooms)
+    return KEPT.union(*rooms)
 
 
 def check(root):
@@ -56,8 +52,7 @@ def check(root):
     for path in [*sources, *check_python.sources(root)]:
         relative = path.relative_to(root)
         folder = relative.parent.as_posix()
-        if "node_modules" in path.parts or any(
-                folder == room or folder.startswith(room + "/") for room in ROOMS):
+        if "node_modules" in path.parts:
             continue
         count += 1
         allowed = kept(folder)

@@ -140,12 +140,14 @@ class Names(TreeTest):
         for name in ("of_frame", "most", "LEAST_GAIN"):
             self.assert_one(check_names.check, {"scripts/a.py": f"\n{name} = 1\n"},
                             f"scripts/a.py:2: {name}")
+        self.assert_one(check_names.check, {"conformance/rlpcval/a.cpp": "int least;\n"},
+                        "conformance/rlpcval/a.cpp:1: least")
 
     def test_words_of_texts_and_names_that_are_kept(self):
         self.assert_clean(check_names.check, {
             "encoder/a.cpp": '// At most, the least of all.\nint x = format.least_level;\n'
                              'const char* s = "at most";\nint kOff = almost_of(offset);\n',
-            "decoder/codec/parse/a.cpp": "int of_frame;\n",
+            "conformance/rlpccov/a.cpp": "int least;\n",
             "scripts/a.py": '"""At most."""\nx = "most"  # most\n'})
 
     def test_a_tree_without_sources_is_not_the_project(self):
