@@ -349,7 +349,7 @@ class EncoderMemory(MeasuredTest):
         mesh, cache = self.path("m.obj"), self.path("m.pc2")
         mesh.write_text("".join(f"v {v} 0 0\n" for v in range(1000)))
         write_pc2(cache, [[0.0] * 3000] * 1000)
-        self.refused(0, ["a shorter --gof needs less".capitalize()], mesh, "--points", cache,
+        self.refused(0, ["a smaller --gof needs less".capitalize()], mesh, "--points", cache,
                      "--gof", "all", "--max-memory", "150MiB")
         self.takes(150 * MIB, 0, "", "rlpcenc", mesh, "--points", cache, "--gof", 20,
                    "--preset", "fast", "--max-memory", "150MiB", "-o", self.path("out.rlpc"))

@@ -223,7 +223,7 @@ TEST_F(MeshSequenceFilesTest, AreSortedByNumberWhenGivenOneByOne) {
   options.more_paths.back() = put("f12.ply", "ply\n");
   EXPECT_NE(result_of(options).find("is no .obj file"), std::string::npos);
   options.points = put("a.pc2", "");
-  EXPECT_NE(result_of(options).find("give one INPUT"), std::string::npos);
+  EXPECT_NE(result_of(options).find("give one mesh"), std::string::npos);
 }
 
 }  // namespace

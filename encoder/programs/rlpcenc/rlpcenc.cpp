@@ -460,7 +460,7 @@ int main(int argc, char** argv) try {
   if (const auto code = rlpc::read_encode_options(argc, argv, options)) return *code;
   return rlpc::after_standard_output("rlpcenc", rlpc::run(options), rlpc::kFailed);
 } catch (const std::bad_alloc&) {
-  std::fprintf(stderr, "rlpcenc: out of memory; a shorter --gof needs less\n");
+  std::fprintf(stderr, "rlpcenc: out of memory; a smaller --gof needs less\n");
   return rlpc::kFailed;
 } catch (const std::exception& error) {
   rlpc::print_message("rlpcenc", error.what());
