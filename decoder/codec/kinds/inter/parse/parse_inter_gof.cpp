@@ -46,7 +46,8 @@ Result<bool> InterGofParser::gof(BitReader& r, const GofHeader& gof_header) {
 }
 
 Result<bool> InterGofParser::gof(BitReader& r, const GofHeader& header, const RigSlots& rigs) {
-  memory_.bytes_in_use += memory_of_rigs(rigs);
+  rig_bytes_ = memory_of_rigs(rigs);
+  memory_.bytes_in_use += rig_bytes_;
   return gof(r, header);
 }
 

@@ -56,8 +56,7 @@ class InterGofParser final : public GofParser {
   Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
                      Vector<SliceEntry>& slices) override;
   bool is_cut() const override { return is_cut_; }
-  // Returns the estimated memory of what has been parsed so far, without shared rigs.
-  std::uint64_t memory_bytes() const override { return memory_bytes_; }
+  std::uint64_t memory_bytes() const override { return rig_bytes_ + memory_bytes_; }
   AnyGof take_gof() override { return finish(); }
 
  private:
@@ -99,7 +98,8 @@ class InterGofParser final : public GofParser {
   std::uint32_t end_temporal_layer_ = 0;         // first temporal layer that the cut drops
   bool is_cut_ = false;
   std::optional<SliceEntry> last_unit_;
-  std::uint64_t memory_bytes_ = 0;
+  std::uint64_t rig_bytes_ = 0;     // of the shared rigs alive
+  std::uint64_t memory_bytes_ = 0;  // of what has been parsed so far
 };
 
 }  // namespace rlpc

@@ -6,11 +6,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/testing/element_names.h"
+#include "decoder/codec/parse/rig_memory.h"
 #include "decoder/testing/inter_gof_units.h"
 
 namespace rlpc {
@@ -383,6 +385,22 @@ TEST(ParseInterGof, NoByteMakesItCrash) {
       }
     }
   }
+}
+
+// Shared rigs that are alive take memory while an inter GOF is parsed, which uses none of them.
+TEST(ParseInterGof, CountsTheRigsThatAreAlive) {
+  RigSlots rigs;
+  auto rig = std::make_shared<SharedRig>();
+  rig->influences.resize(1000);
+  rigs.slots[3] = rig;
+  InterGofUnits without = units_of(kDyadic);
+  InterGofUnits with = units_of(kDyadic);
+  ASSERT_TRUE(without.gof(kDyadic.units[0]));
+  BitReader r(kDyadic.units[0], kPayloadBitPos);
+  const GofHeader header = parse_gof_header(r, high_header(9, kDyadic.num_frames), 0);
+  ASSERT_TRUE(with.parser().gof(r, header, rigs));
+  EXPECT_EQ(with.parser().memory_bytes(),
+            without.parser().memory_bytes() + memory_of_rigs(rigs));
 }
 
 }  // namespace
