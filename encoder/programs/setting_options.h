@@ -61,8 +61,8 @@ inline constexpr std::array kEncoderOptions = std::to_array<SettingOption>({
     {"weld = false", "--no-weld"},
 });
 
-// Returns a message of the encoder as users of rlpcenc and rlpccmp know it, with options in
-// place of settings.
+// Returns a message of the encoder for users of rlpcenc and rlpccmp, with options in place of
+// settings.
 inline std::string with_encoder_options(std::string_view message) {
   return with_options(message, kEncoderOptions);
 }

@@ -5,7 +5,7 @@ In the sources of the search (scripts/studies/tuning/tuned.py), each constant th
 a number has a comment `tuned: REASON` or `fixed: REASON` behind or above it. No other number has a
 fraction, except in plain formulas (halves, bits of a byte, per cent). Tuned constants have
 different names, and encoder/codec/kinds/skinned/search/README.md has a row for each, and for no
-other.
+other, with its value and reason.
 """
 
 import re
@@ -62,6 +62,10 @@ def page_rows(root, constants):
         yield f"{PAGE}: no row for {name}; scripts/constants --measure ... --write"
     for name in sorted(set(listed) - set(known)):
         yield f"{PAGE}: {name} is no tuned constant"
+    if listed and set(listed) == set(known):
+        text = page.read_text(encoding="utf-8")
+        if worth.with_constants(text, constants) != text:
+            yield f"{PAGE}: values or reasons have changed; run scripts/constants --write"
 
 
 def check(root):

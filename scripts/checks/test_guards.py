@@ -347,6 +347,14 @@ class Constants(RealTree):
             with self.subTest(line=line):
                 self.plant(line, "kMagic says neither")
 
+    def test_the_table_has_values_and_reasons_as_declared(self):
+        for old, new in (("kSearchInfluences = 2;", "kSearchInfluences = 3;"),
+                         ("Bones that a vertex may follow", "Bones that any vertex may follow")):
+            with self.subTest(new=new):
+                self.complaint(check_constants.check, self.SOURCE,
+                               lambda text, old=old, new=new: text.replace(old, new),
+                               "run scripts/constants --write")
+
     def test_every_folder_of_the_search_is_checked(self):
         for name in ("encoder/codec/spans/component_cost.h",
                      "encoder/codec/sequence/target/target_search.cpp",

@@ -9,7 +9,7 @@
 namespace rlpc {
 namespace {
 
-constexpr double kFlagBits = 5.0;  // tuned: what a flag that is rarely set costs; 3 and 8 alike
+constexpr double kFlagBits = 5.0;  // tuned: Bits of a flag that is rarely set.
 constexpr int kMaxPasses = 4;      // fixed: few flags change after the third
 
 // Faces whose diagonals can be changed one by one.

@@ -115,6 +115,19 @@ class Measure(unittest.TestCase):
                       page)
         self.assertEqual(worth.rows(page), ["some_file.kTry"])
 
+    def test_measured_cells_stay_when_values_or_reasons_change(self):
+        constants = [c for c in tuned.declarations("encoder/codec/spans/some_file.h", TEXT)
+                     if c.name == "kTry"]
+        old = (f"{worth.BEGIN}\n{chr(10).join(worth._HEAD)}\n"
+               "| `gone.kOther` | 1 | = / +0 |  |  | one | gone |\n"
+               f"| `some_file.kTry` | 0.5 | +1.00 / +2 |  | = / +0 | two | old |\n{worth.END}\n")
+        new = worth.with_constants(old, constants)
+        self.assertIn("| `some_file.kTry` | 0.72 | +1.00 / +2 |  | = / +0 | two | a trial |", new)
+        self.assertEqual(worth.rows(new), ["some_file.kTry"])
+        self.assertEqual(worth.with_constants(new, constants), new)
+        unmeasured = worth.with_constants(f"{worth.BEGIN}\n{worth.END}\n", constants)
+        self.assertIn("| `some_file.kTry` | 0.72 |  |  |  |  | a trial |", unmeasured)
+
     def test_the_table_goes_between_its_marks(self):
         page = f"before\n{worth.BEGIN}\nold\n{worth.END}\nafter\n"
         self.assertEqual(worth.with_table(page, "new\n"),

@@ -182,18 +182,25 @@ def _cell(entry):
     return f"{size} / {100 * time_change:+.0f}"
 
 
+_HEAD = ("| constant | value | off | half | double | with | what it decides |",
+         "|---|---|---|---|---|---|---|")
+
+
+def _row(constant, cells):
+    value = " ".join(constant.value.split())
+    return f"| `{constant.id}` | {value} |{cells} {constant.reason} |"
+
+
 def markdown(constants, tables):
     """The rows of all constants.
 
     tables: {id: {"with": what they were measured with, column: cell}}."""
-    lines = ["| constant | value | off | half | double | with | what it decides |",
-             "|---|---|---|---|---|---|---|"]
+    lines = [*_HEAD]
     for c in constants:
         row = tables.get(c.id, {})
         cells = " | ".join(_cell(row.get(column)) for column in COLUMNS)
         label = row["with"] if len(row) > 1 else ""  # else nothing was measured
-        value = " ".join(c.value.split())
-        lines.append(f"| `{c.id}` | {value} | {cells} | {label} | {c.reason} |")
+        lines.append(_row(c, f" {cells} | {label} |"))
     return "\n".join(lines) + "\n"
 
 
@@ -212,3 +219,12 @@ def with_table(text, table):
 def rows(text):
     """The ids that the table of a page has."""
     return re.findall(r"^\| `([\w.]+)` \|", text, re.MULTILINE)
+
+
+def with_constants(text, constants):
+    """The text of a page with constants, values and reasons as declared; what was measured stays.
+    """
+    measured = dict(re.findall(r"^\| `([\w.]+)` \| (?:[^|]*) \|((?:[^|]*\|){4})", text,
+                               re.MULTILINE))
+    lines = [_row(c, measured.get(c.id, "  |  |  |  |")) for c in constants]
+    return with_table(text, "\n".join([*_HEAD, *lines]) + "\n")

@@ -10,8 +10,8 @@
 namespace rlpc {
 namespace {
 
-// The geometry weights, 8.11, which learned weights start from.
-// tuned (off: 0): Binary logarithm of their damping.
+// tuned (off: 0): Binary logarithm of the damping of the geometry weights, 8.11, from which
+// learned weights start.
 constexpr int kFrameDamping = 6;
 // tuned (off: 0): The weight of near vertices, 1/16. Learned weights barely depend on it;
 // without learning, frames take 1 to 7 % more bytes if it is 0.

@@ -16,7 +16,7 @@ namespace {
 // frames never win by more than 2 %.
 constexpr std::array<int, 2> kPeriodsLog2{4, 6};
 
-// tuned (off: 0): Numbers of patches that are compared, besides none.
+// tuned (off: 0): The smaller number of patches that is compared, besides none.
 constexpr std::uint32_t kFewPatches = 16;
 // tuned (off: 0): The larger number of patches that is compared.
 constexpr std::uint32_t kManyPatches = 48;

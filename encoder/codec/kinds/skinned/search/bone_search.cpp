@@ -106,8 +106,8 @@ double BoneSearch::expected_cost(const Growth& growth, const Growth::Bones& bone
 // Fits bones of each number, ascending, as long as they may be better worth their bits than a
 // single bone, others with the same number, and those before.
 void BoneSearch::grow_all(double step) {
-  // tuned (off: 100): Numbers of bones, in order, from which expected costs decide that there
-  // is none.
+  // tuned (off: 100): Numbers of bones that are fitted, in ascending order, before expected
+  // costs may decide that no bones are used.
   constexpr std::size_t kTelling = 2;
   start_all();
   if (growths_.front().bones.size() > 1) return;
