@@ -14,7 +14,7 @@ struct SettingOption {
 };
 
 // Replaces quoted settings of the table by their options: 'gof_frames' by --gof, and 'profile =
-// high' by --profile high if the table has `profile` alone. All other text stays.
+// high' by --profile high if the table has `profile` without a value. All other text stays.
 std::string with_options(std::string_view message, std::span<const SettingOption> table);
 
 }  // namespace rlpc

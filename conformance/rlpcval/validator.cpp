@@ -89,7 +89,7 @@ void StreamValidator::lose_units() {
   previous_.reset();
   gof_ = {};
   rig_ = {};
-  doubt_models();
+  doubt_rigs();
   report_.complete = false;
 }
 

@@ -69,10 +69,10 @@ struct ValidationReport {
   std::uint32_t frames = 0;  // frames of these GOFs
   std::uint32_t attribute_sets = 0;
   std::uint32_t hashed_frames = 0;          // frames whose positions match their hash
-  std::uint32_t gofs_of_hashed_frames = 0;  // inter GOFs, each of which has a hash of its own
+  std::uint32_t gofs_of_hashed_frames = 0;  // inter GOFs, each of whose frames has a hash
 
   std::size_t count(Severity severity) const;
-  // Returns the finding that a decoder reports; null if it decodes the stream.
+  // Returns the finding that a decoder reports; null if none of them stops it (see `stopped`).
   const Finding* first_failure() const;
 };
 

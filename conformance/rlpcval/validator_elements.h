@@ -1,5 +1,5 @@
-// Findings of the decoder's parse functions: they go on after values that break a rule, so that
-// all values of a header are checked.
+// Reads payloads with the decoder's parse functions, which go on after values that break a
+// rule, so that all values of a header are checked.
 #pragma once
 
 #include <cstddef>

@@ -43,7 +43,7 @@ struct GofHeaderCheck {
 };
 
 // 6.5 gof( ), up to its section. expected_first_frame: none if not known. num_layers: layers of
-// the mesh, for skinned and inter GOFs; 0 if not known. rigs: the kept rigs.
+// the mesh, for skinned and inter GOFs; 0 if not known. rigs: those alive.
 GofHeaderCheck check_gof_header(ElementReader& r, const SequenceHeader& header,
                                 std::optional<std::uint32_t> expected_first_frame,
                                 std::uint32_t num_layers, const SeenRigs& rigs);

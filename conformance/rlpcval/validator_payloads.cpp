@@ -36,7 +36,7 @@ void StreamValidator::read_payload(const UnitHeader& unit, bool sound) {
   if (unit.type() == UnitType::kGof) begin_gof(unit);
   if (unit.type() == UnitType::kRig) begin_rig(unit);
   const auto payload = units_.payload(unit);
-  if (!payload && unit.type() == UnitType::kRig) doubt_models();
+  if (!payload && unit.type() == UnitType::kRig) doubt_rigs();
   if (!payload) return;
   findings_.suspect(!sound);
   switch (unit.type()) {

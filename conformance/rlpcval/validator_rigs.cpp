@@ -28,7 +28,7 @@ void StreamValidator::begin_rig(const UnitHeader& unit) {
 
 // 6.13 rig( )
 void StreamValidator::rig(const UnitHeader& unit, const Payload& payload) {
-  if (!can_read()) return doubt_models();
+  if (!can_read()) return doubt_rigs();
   ElementReader r(unit, payload, findings_);
   const std::uint32_t num_layers =
       lead_.context.meshes ? (*lead_.context.meshes)[Prediction::kLayers].num_layers() : 0;
@@ -39,7 +39,7 @@ void StreamValidator::rig(const UnitHeader& unit, const Payload& payload) {
   rig_.suspect = damaged || lead_.connectivity_suspect;
   if (!header.rig_idx || damaged) {
     index_.rig_indices_known = false;
-    doubt_models();
+    doubt_rigs();
   }
   if (header.rig_idx) {
     index_.rigs.back().rig_idx = *header.rig_idx;
@@ -90,7 +90,7 @@ void StreamValidator::use_rig(const SkinnedGof& gof) {
   }
 }
 
-void StreamValidator::doubt_models() {
+void StreamValidator::doubt_rigs() {
   for (SeenRig& kept : rigs_) {
     kept.lost = true;
     kept.suspect = true;

@@ -19,7 +19,7 @@ struct SeenRig {
   FindingUnit place;
   std::uint64_t bit_pos = 0;  // start of the payload of its unit
   bool is_used = false;       // a GOF has used it
-  std::vector<bool> moves;    // [trajectory]: moves in one of these GOFs
+  std::vector<bool> moves;    // [trajectory]: moves in a GOF that uses the rig
 };
 using SeenRigs = std::array<SeenRig, kMaxRigs>;  // [rig_idx]
 

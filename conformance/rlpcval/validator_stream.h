@@ -90,7 +90,7 @@ class StreamValidator {
   // Marks the rig, bones and trajectories of a GOF that has been read as used.
   void use_rig(const SkinnedGof& gof);
   // Marks all rigs as lost: units were lost, so rigs may have been replaced.
-  void doubt_models();
+  void doubt_rigs();
   // Warns of what no GOF used in a rig that is replaced or at the end of the stream.
   void release(const SeenRig& kept);
   void end_rigs();
@@ -132,7 +132,8 @@ class StreamValidator {
   };
   LeadingUnits lead_;
 
-  // The positions that attributes were predicted from, until that frame has been decoded.
+  // CRC of the first frame that attributes were predicted from, and its place in the stream;
+  // none once that frame has been compared.
   struct FirstFrame {
     std::uint32_t crc = 0;
     std::optional<FindingUnit> place;
@@ -143,7 +144,7 @@ class StreamValidator {
   // A GOF or shared rig. Parser: of its units, if those so far could be read.
   template <class Parser>
   struct Current {
-    std::optional<UnitHeader> unit;  // none unless it, or a slice of it, is directly before
+    std::optional<UnitHeader> unit;  // none unless it, or its slice, is the unit before
     FindingUnit place;
     bool suspect = false;
     UnitCounts unit_counts;  // of the units after it

@@ -19,8 +19,7 @@ inline constexpr std::array kDecoderOptions = std::to_array<SettingOption>({
     {"player", "--player PAGE"},
 });
 
-// Returns a message as users of rlpcdec and rlpcinfo know it, with options in place of
-// settings.
+// Returns a message for users of rlpcdec and rlpcinfo, with options in place of settings.
 inline std::string with_decoder_options(std::string_view message) {
   return with_options(message, kDecoderOptions);
 }

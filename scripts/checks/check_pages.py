@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Files, relative links and functions named in pages (*.md) exist.
+"""Files, relative links and functions named in pages (*.md) exist, and files that scripts name.
 
 A name is checked if it begins with one of the project's folders. It may be a glob; `X` denotes
-a version that does not exist yet (streams/vX.Y). Tables that scripts write are between marks.
+a version that does not exist yet (streams/vX.Y). In CONTRIBUTING.md, names of sources without
+their folders are checked as well. Scripts name files by ROOT and strings between slashes. Tables
+that scripts write are between marks.
 """
 
 import re
@@ -14,6 +16,10 @@ _FOLDERS = ("common", "conformance", "decoder", "encoder", "scripts", "spec", "s
 _NAME = re.compile(rf"(?<![\w/.%-])((?:{'|'.join(_FOLDERS)})/[\w./*-]*)")
 # A function of ours, in CONTRIBUTING.md: `make_recon()`, `Decoder::pose()`.
 _FUNCTION = re.compile(r"`(?:\w+::)*(\w+)\(\)`")
+# A source without its folder, in CONTRIBUTING.md: `principal_shapes.h`.
+_BARE = re.compile(r"`(?:[\w-]+/)*([\w-]+\.(?:h|cpp|c|py|mjs|js|cmake|md))`")
+# A file that a script names, by the names of folders and file; not what it writes, in build/.
+_OF_ROOT = re.compile(r'\bROOT((?:\s*/\s*"[\w.-]+")+)')
 _LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 
 # Page: tables in it that a script writes, between `<!-- begin: NAME ... -->` and
@@ -36,6 +42,37 @@ def missing(root, path):
         for match in _LINK.finditer(line):
             if not (path.parent / match.group(1)).exists():
                 yield number, match.group(1)
+
+
+def files(root):
+    return (path for folder in _FOLDERS for path in (root / folder).rglob("*") if path.is_file())
+
+
+def without_source(root):
+    """(line, name) of sources that CONTRIBUTING.md names without a folder, and are nowhere."""
+    page = root / "CONTRIBUTING.md"
+    if not page.is_file():
+        return
+    known = {path.name for path in (*files(root), *root.glob("*.md"))}
+    for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
+        for name in _BARE.findall(line):
+            if name not in known:
+                yield number, name
+
+
+def named_by_scripts(root):
+    """(script, line, name) of files that a script in Python names, and do not exist."""
+    for path in files(root):
+        if path.suffix not in ("", ".py"):
+            continue
+        try:
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            continue
+        for match in _OF_ROOT.finditer(text):
+            name = "/".join(re.findall(r'"([\w.-]+)"', match.group(1)))
+            if not name.startswith("build") and not (root / name).exists():
+                yield path, text.count("\n", 0, match.start()) + 1, name
 
 
 def without_code(root):
@@ -70,6 +107,10 @@ def check(root):
                   for path in found for line, name in missing(root, path)]
     complaints += [f"CONTRIBUTING.md:{line}: no source has {name}( )"
                    for line, name in without_code(root)]
+    complaints += [f"CONTRIBUTING.md:{line}: there is no {name}"
+                   for line, name in without_source(root)]
+    complaints += [f"{path.relative_to(root)}:{line}: there is no {name}"
+                   for path, line, name in named_by_scripts(root)]
     complaints += [f"{page}: no marks `begin: {name}`, `end: {name}`, once each"
                    for page, name in unmarked(root)]
     return complaints, f"{len(found)} pages name only existing files"

@@ -73,6 +73,19 @@ class Pages(TreeTest):
         self.run_on("scripts/break*\n", "scripts/break*")
         self.run_on("[a](a.md)\n", "there is no a.md")
 
+    def test_sources_without_their_folder(self):
+        page = {"CONTRIBUTING.md": "`make_it`, `a.md`, `gofs/b.h`\n"}
+        marks = {"README.md": self.MARKS}
+        self.assert_one(check_pages.check, {**self.THERE, **marks, **page}, "there is no b.h")
+        self.assert_clean(check_pages.check,
+                          {**self.THERE, **marks, **page, "common/b.h": ""})
+
+    def test_files_that_scripts_name(self):
+        named = "".join(f'A = {"ROOT"} / "{folder}" / "b.md"\n' for folder in ("spec", "build"))
+        page = {**self.THERE, "README.md": self.MARKS, "scripts/make_it": named}
+        self.assert_one(check_pages.check, page, "scripts/make_it:1", "there is no spec/b.md")
+        self.assert_clean(check_pages.check, {**page, "spec/b.md": ""})
+
     def test_written_tables_have_marks(self):
         for marks in ("", 2 * self.MARKS, self.MARKS.replace("end", "begin")):
             with self.subTest(marks=marks):

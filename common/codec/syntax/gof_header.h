@@ -16,7 +16,7 @@ namespace rlpc {
 enum class GofKind : std::uint8_t {
   kCluster,    // 6.5: clusters in local coordinate frames
   kSkinned,    // 6.11: bones, and trajectories for the residual
-  kSharedRig,  // 6.13.1: bones and trajectories with the vertices of a shared rig
+  kSharedRig,  // 6.13.1: motion of bones and trajectories; the rest is in a shared rig
   kInter,      // 6.14: frames predicted from frames
 };
 
@@ -24,7 +24,7 @@ enum class GofKind : std::uint8_t {
 struct KindProperties {
   GofKind kind;
   const char* name;           // in messages: "a cluster GOF"
-  bool has_rig;               // its vertices are those of a shared rig
+  bool has_rig;               // its per-vertex data are those of a shared rig
   std::uint32_t profile_idc;  // the lowest profile with this kind
   // Table 7-1: type of the units that may follow the GOF unit in its access unit before its
   // hash. None if no units may.

@@ -25,7 +25,7 @@ class GofParser : public Owned {
   // unit_bit_pos: start of the unit.
   virtual Result<bool> slice(BitReader& r, std::uint64_t unit_bit_pos,
                              Vector<SliceEntry>& slices);
-  // Returns whether the cut drops the slice whose unit begins with `r`, which then need not be
+  // Returns whether the cut drops the slice whose payload `r` begins. If so, it need not be
   // parsed.
   virtual bool drops(BitReader& /*r*/) { return false; }
   // Returns whether a slice has been dropped so far.

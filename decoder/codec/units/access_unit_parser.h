@@ -16,8 +16,8 @@
 
 namespace rlpc {
 
-// Checks every size against the level, and the memory it needs against the limit, before
-// allocating. After an error it can only be destroyed.
+// Checks every size against the level, and the memory that the GOF needs against the limit,
+// before allocating. After an error it can only be destroyed.
 class AccessUnitParser {
  public:
   // The context must outlive it, and have its connectivity set. Slices outside the cut are
@@ -29,12 +29,12 @@ class AccessUnitParser {
   // unit with header and CRC.
   //
   // 6.5 gof( ), once. first_frame: the first frame that the GOF must have. rigs: the shared
-  // rigs alive at it.
+  // rigs alive at the GOF unit.
   Result<bool> gof(BitReader& r, std::uint32_t first_frame, const RigSlots& rigs,
                    std::uint64_t unit_bytes);
   // Returns the kind of the GOF, once its unit has been parsed.
   GofKind kind() const { return kind_; }
-  // Returns whether the cut drops the slice whose unit begins with `r`, which then need not be
+  // Returns whether the cut drops the slice whose payload `r` begins. If so, it need not be
   // parsed.
   bool drops(BitReader& r);
   // 6.12 slice_unit( ) or 6.14.2 frame_unit( ), any number of times. unit_bit_pos: start of the
