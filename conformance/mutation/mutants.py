@@ -1,4 +1,7 @@
-"""Faults for the decoder: reading the list, seeding one, and finding a stream that notices it."""
+"""Faults: reading a list of them, seeding one, and finding a stream that notices it in the decoder.
+
+encoder_tests.py finds tests that notice faults of the encoder.
+"""
 
 import contextlib
 import dataclasses
@@ -34,18 +37,23 @@ class Mutant:
     file: str
     old: str
     new: str
-    equivalent: str  # why no stream can notice it; empty: some stream must
+    equivalent: str  # why nothing can notice it; empty: some stream or test must
     line: int
+    list: str = LIST.name
+    tests: tuple = ()  # those that may notice it, in this order, if it is one of the encoder
 
 
 def read(path=LIST):
     """All mutants of the list."""
     mutants = []
+    tests = ()
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         mark, text = line[:2], line[2:]
         if mark == "= ":
             name, _, what = text.partition(" ")
-            mutants.append(Mutant(name, what.strip(), "", "", "", "", number))
+            mutants.append(Mutant(name, what.strip(), "", "", "", "", number, path.name, tests))
+        elif mark == "* ":
+            tests = tuple(text.split())
         elif mark in ("- ", "+ ", "~ ", "-", "+"):
             field = {"-": "old", "+": "new", "~": "equivalent"}[mark[0]]
             before = getattr(mutants[-1], field)
@@ -69,9 +77,21 @@ def seeded(mutant, source):
     """The source with the fault in it."""
     found = list(_pattern(mutant.old).finditer(source))
     if len(found) != 1:
-        raise MutantError(f"{LIST.name}:{mutant.line}: {mutant.name}: its text occurs "
+        raise MutantError(f"{mutant.list}:{mutant.line}: {mutant.name}: its text occurs "
                           f"{len(found)} times in {mutant.file}; bring the list up to date")
     return source[:found[0].start()] + mutant.new + source[found[0].end():]
+
+
+@contextlib.contextmanager
+def planted(mutant, folder):
+    """Puts the fault into the sources in a folder, and takes it out again."""
+    path = folder / mutant.file
+    original = path.read_text(encoding="utf-8")
+    try:
+        path.write_text(seeded(mutant, original), encoding="utf-8")
+        yield
+    finally:
+        path.write_text(original, encoding="utf-8")
 
 
 def check(root, mutants):
@@ -132,7 +152,8 @@ class Workshop:
 
     def judge_right(self):
         """The id of a stream on which the decoder fails without a fault, or None."""
-        return self._first_failure()
+        stream, _ = self._first_failure() or (None, None)
+        return stream
 
     def try_out(self, mutant):
         """(how it ended, stream): killed, diagnosed (only the rule differs), survived."""
@@ -154,14 +175,9 @@ class Workshop:
     @contextlib.contextmanager
     def _built(self, mutant):
         """Builds the decoder with the fault; yields whether this gives another program."""
-        path = self._source / mutant.file
-        original = path.read_text(encoding="utf-8")
-        try:
-            path.write_text(seeded(mutant, original), encoding="utf-8")
+        with planted(mutant, self._source):
             self._make()
             yield self._digest() != self._right
-        finally:
-            path.write_text(original, encoding="utf-8")
 
     def _first_failure(self):
         """(stream, outcome) of the first stream that does not pass in all columns, or None."""
