@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "common/codec/bits/bit_reader.h"
+#include "common/codec/mesh/connectivity_models.h"
 #include "decoder/codec/parse/sequence/parse_connectivity.h"
 #include "encoder/codec/write/write_connectivity.h"
 
@@ -311,6 +312,17 @@ TEST(ConnectivityRoundTrip, JoinsAreNearOrFar) {
                                  static_cast<std::uint32_t>(mesh.triangles.size())));
   EXPECT_GT(joins.num_far, 0);
   EXPECT_GT(joins.num_near, 0);
+}
+
+TEST(ConnectivityRoundTrip, JoinsMayBeAsFarAsTheirLimit) {
+  constexpr std::uint32_t kAround = 2 * kMaxJoinDistance + 100;  // vertices
+  for (std::uint32_t d = kMaxJoinDistance - 4; d <= kMaxJoinDistance + 4; ++d) {
+    for (const std::uint32_t third : {d, kAround - d}) {
+      Mesh mesh = grid(kAround, 2, true, false);
+      mesh.triangles.push_back({1, 0, third});
+      expect_round_trip(mesh);
+    }
+  }
 }
 
 TEST(ConnectivityRoundTrip, EveryProperPrefixFails) {

@@ -49,7 +49,9 @@ TEST(Axes, AreMirroredByOneExchangeOrSign) {
 
 class OneTriangle final : public FrameSource {
  public:
-  explicit OneTriangle(const std::optional<Axes>& axes_of_mesh) : FrameSource(shape()) {
+  explicit OneTriangle(const std::optional<Axes>& axes_of_mesh,
+                       const SourceAttributes& attributes = {})
+      : FrameSource(shape(attributes)) {
     set_axes_of_mesh(axes_of_mesh);
   }
   std::optional<InputError> read_frame(std::uint32_t /*frame*/, std::span<float> xyz) override {
@@ -58,8 +60,9 @@ class OneTriangle final : public FrameSource {
   }
 
  private:
-  static Shape shape() {
+  static Shape shape(const SourceAttributes& attributes) {
     Shape s;
+    s.attributes = attributes;
     s.num_vertices = 3;
     s.num_frames = 1;
     s.triangles = {{0, 1, 2}};
@@ -87,6 +90,33 @@ TEST(TurnedSource, KeepsTheSideThatTrianglesFace) {
   // The triangles are those of a mesh that is mirrored already.
   EXPECT_EQ(turned_triangle("x,z,y", "x,z,y")->triangles()[0], as_it_is);
   EXPECT_EQ(turned_triangle("x,z,-y", "x,z,y")->triangles()[0], turned_over);
+}
+
+TEST(TurnedSource, TurnsNormalsAndKeepsTheValuesOfCorners) {
+  const auto turned = [](const std::string& axes) {
+    SourceAttributes attributes;
+    attributes.sets.push_back({.name = "uv0",
+                               .domain = AttributeDomain::kCorner,
+                               .num_components = 2,
+                               .values = {0, 0, 1, 0, 0, 1},
+                               .value_of_corner = {0, 1, 2}});
+    attributes.sets.push_back({.name = "normal",
+                               .kind = SourceAttribute::Kind::kNormals,
+                               .num_components = 3,
+                               .values = {1, 2, 3, 4, 5, 6, 7, 8, 9}});
+    attributes.rest_of_corner = {0, 1, 2};
+    return turn_source(std::make_unique<OneTriangle>(std::nullopt, attributes),
+                       *parse_axes(axes));
+  };
+  using Indices = std::vector<std::uint32_t>;
+  const auto rotated = turned("x,z,-y");
+  EXPECT_EQ(rotated->attributes().sets[0].value_of_corner, (Indices{0, 1, 2}));
+  EXPECT_EQ(rotated->attributes().sets[0].values, (std::vector<float>{0, 0, 1, 0, 0, 1}));
+  EXPECT_EQ(rotated->attributes().sets[1].values,
+            (std::vector<float>{1, 3, -2, 4, 6, -5, 7, 9, -8}));
+  const auto mirrored = turned("x,z,y");
+  EXPECT_EQ(mirrored->attributes().sets[0].value_of_corner, (Indices{0, 2, 1}));
+  EXPECT_EQ(mirrored->attributes().rest_of_corner, (Indices{0, 2, 1}));
 }
 
 TEST(TurnedSource, HasTheAxesOfItsMeshOnceTurnedToThem) {

@@ -183,6 +183,7 @@ TEST_F(LossesTest, NamesTheTimesOfPointCaches) {
   const float infinity = std::numeric_limits<float>::infinity();
   const std::vector<std::pair<std::vector<float>, const char*>> losses{
       {{0, 0.04F, 0.2F}, "uneven frame times"},
+      {{0, 0.04F, 0.085F}, "uneven frame times"},
       {{0.08F, 0.04F, 0}, "not finite and ascending"},
       {{0, 0.08F, 0.04F}, "not finite and ascending"},
       {{0, infinity, 1}, "not finite and ascending"},

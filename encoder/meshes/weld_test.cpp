@@ -78,6 +78,27 @@ TEST(Weld, ReportsTheDegenerateTrianglesItDrops) {
   EXPECT_EQ(welded({{0, 0, 1}}, {{0, 1, 2}})->notes().back(), "dropped 1 degenerate triangle");
 }
 
+TEST(Weld, KeepsTheValuesOfTheTrianglesThatAreLeft) {
+  FrameSource::Shape shape;
+  shape.triangles = {{0, 1, 2}, {1, 1, 2}, {3, 1, 3}, {3, 2, 1}};
+  shape.attributes.rest_of_corner = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  shape.attributes.sets.push_back(
+      {.name = "uv0",
+       .domain = AttributeDomain::kCorner,
+       .num_components = 2,
+       .value_of_corner = {10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21}});
+  shape.attributes.sets.push_back({.name = "two numbers",
+                                   .domain = AttributeDomain::kTriangle,
+                                   .num_components = 2,
+                                   .values = {1, 2, 3, 4, 5, 6, 7, 8}});
+  drop_degenerate(shape);
+  using Indices = std::vector<std::uint32_t>;
+  EXPECT_EQ(shape.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 2, 1}}));
+  EXPECT_EQ(shape.attributes.rest_of_corner, (Indices{0, 1, 2, 9, 10, 11}));
+  EXPECT_EQ(shape.attributes.sets[0].value_of_corner, (Indices{10, 11, 12, 19, 20, 21}));
+  EXPECT_EQ(shape.attributes.sets[1].values, (std::vector<float>{1, 2, 7, 8}));
+}
+
 TEST(Weld, KeepsDistinctVertices) {
   const auto source = welded({{1, 2, 3}}, {{2, 1, 0}});
   EXPECT_EQ(x_of(*source, 0), (std::vector<float>{1, 2, 3}));

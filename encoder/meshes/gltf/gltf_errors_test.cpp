@@ -164,8 +164,8 @@ TEST_F(GltfErrorsTest, MissingBuffers) {
   expect_uri("short.bin", "buffers[0].byteLength: found 36, expected at most 35");
   expect_uri("", "not a regular file");
   for (const char* uri :
-       {"../outside.bin", "x/../../outside.bin", "/etc/passwd", "%2e%2e/outside.bin",
-        "file:outside.bin", "https://example.org/a.bin"}) {
+       {"../outside.bin", "x/../../outside.bin", "/etc/passwd", "/no/such/file.bin",
+        "%2e%2e/outside.bin", "file:outside.bin", "https://example.org/a.bin"}) {
     expect_uri(uri, "expected a file in the folder of the document, or below it");
   }
   const std::filesystem::path in = folder_ / "in";

@@ -157,6 +157,15 @@ TEST_F(GltfPrimitiveTest, FollowsStrides) {
   EXPECT_EQ(frame_of(*open(builder), 0), kCorners);
 }
 
+TEST_F(GltfPrimitiveTest, ReadsMoreThan64KiBOfAnAccessor) {
+  GltfBuilder builder;
+  std::vector<float> xyz(3 * std::size_t{9000});
+  for (std::size_t i = 0; i < xyz.size(); ++i) xyz[i] = static_cast<float>(i);
+  builder.add_root(
+      {{"mesh", builder.add_mesh({{"attributes", {{"POSITION", builder.add("VEC3", xyz)}}}})}});
+  EXPECT_EQ(frame_of(*open(builder), 0), xyz);
+}
+
 // Builds a triangle that follows two joints, 10 along x and 20 along y; the bind pose is at x -
 // 1.
 GltfBuilder with_skin(const std::vector<std::uint8_t>& joints,

@@ -62,6 +62,18 @@ TEST(ObjAttributes, TextureCoordinatesPointDown) {
   EXPECT_EQ(uv.value_of_corner, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2}));
 }
 
+TEST(ObjAttributes, NegativeIndicesCountTheirOwnList) {
+  const SingleMesh mesh = mesh_of(kVertices + "vt 0 1\nvt 1 1\nvn 1 0 0\nvn 0 1 0\nvn 0 0 1\n" +
+                                  "f -4/-2/-3 -3/-1/-2 -2/-1/-1\n");
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+  const SourceAttribute& normal = *find(mesh, "normal");
+  EXPECT_EQ(at_corner(normal, 0), (Floats{1, 0, 0}));
+  EXPECT_EQ(at_corner(normal, 2), (Floats{0, 0, 1}));
+  const SourceAttribute& uv = *find(mesh, "uv0");
+  EXPECT_EQ(at_corner(uv, 0), (Floats{0, 0}));
+  EXPECT_EQ(at_corner(uv, 2), (Floats{1, 0}));
+}
+
 TEST(ObjAttributes, FansKeepTheValuesOfTheirCorners) {
   const SingleMesh mesh = mesh_of(
       kVertices + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 2\nf 1/4/1 2/3/1 3/2/1 4/1/1\n");

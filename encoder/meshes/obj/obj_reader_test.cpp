@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "encoder/meshes/off/off_reader.h"
 #include "encoder/meshes/ply/ply_reader.h"
@@ -90,6 +91,13 @@ TEST(ObjReader, RoundsNumbersCorrectly) {
   EXPECT_EQ(mesh->xyz[3], 0.0F);
   EXPECT_EQ(mesh->xyz[4], 0.0F);
   EXPECT_EQ(mesh->xyz[5], std::numeric_limits<float>::denorm_min());
+}
+
+TEST(ObjReader, KeepsWhatFloatsLeaveOfNumbers) {
+  const auto mesh = parse_obj("v 0.1 0.5 -0.3\n", "a.obj");
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  const auto left_of = [](double x) { return static_cast<float>(x - static_cast<float>(x)); };
+  EXPECT_EQ(mesh->left, (std::vector<float>{left_of(0.1), 0, left_of(-0.3)}));
 }
 
 TEST(ObjReader, RefusesNonFiniteNumbers) {

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -293,6 +294,17 @@ TEST_F(MeshSequenceTest, ReadsEveryFormat) {
   EXPECT_EQ(first_coordinates(folder_.string()), (std::vector<float>{10, 11}));
 }
 
+TEST_F(MeshSequenceTest, HasTheNumbersOfItsFilesExactly) {
+  const std::string file = put("one.obj", "v 0.1 -0.3 0.5\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto source = open_frame_source({file, "", {}});
+  ASSERT_TRUE(source) << source.error().message;
+  std::vector<double> xyz(9);
+  ASSERT_FALSE((*source)->read_exact(0, xyz));
+  EXPECT_NEAR(xyz[0], 0.1, 1e-14);
+  EXPECT_NEAR(xyz[1], -0.3, 1e-14);
+  EXPECT_EQ(xyz[2], 0.5);
+}
+
 TEST_F(MeshSequenceTest, DetectsAnObjFileByItsContents) {
   EXPECT_EQ(first_coordinates(put("mesh", "# by hand\n" + frame(3))), (std::vector<float>{3}));
   expect_error({put("text", "voila\n"), "", {}}, "unknown kind of file");
@@ -369,6 +381,9 @@ TEST_F(FrameSourceTest, ReadsDecoderOutput) {
   EXPECT_EQ(xyz, (std::vector<float>{0, 0, 0, 5.5F, 0.5F, -4.5F, 5, 0, -5}));
   ASSERT_FALSE(s.read_frame(0, xyz));
   EXPECT_EQ(xyz[7], 1073741824.0F);
+  std::vector<double> exact(9);
+  ASSERT_FALSE(s.read_exact(0, exact));
+  EXPECT_EQ(exact, (std::vector<double>{5, 0, -5, 5.5, 0, -5, 5, 1073741823.5, -5}));
 }
 
 TEST_F(FrameSourceTest, RefusesBrokenDecoderOutput) {
@@ -394,6 +409,50 @@ TEST_F(FrameSourceTest, RefusesBrokenDecoderOutput) {
   lying = good;
   lying.replace(24, 4, std::string(4, '\0'));
   expect_rlpd_error(lying, "frame rate 25/0");
+}
+
+// Streams of frames are read from a file here, as from a pipe: in order, without its size.
+class FrameStreamTest : public FrameSourceTest {
+ protected:
+  struct Contents {
+    std::vector<float> xyz;
+    std::vector<double> exact;
+  };
+  // Returns the positions of all frames.
+  static Contents read_all(const std::string& path, const std::string& mesh_path) {
+    std::FILE* const file = std::fopen(path.c_str(), "rb");
+    const auto stream = open_frame_stream(file, mesh_path, {});
+    EXPECT_TRUE(stream) << stream.error().message;
+    Contents all;
+    while (stream) {
+      std::vector<float> xyz(3 * std::size_t{(*stream)->shape().num_vertices});
+      const auto more = (*stream)->next_frame(xyz);
+      EXPECT_TRUE(more) << more.error().message;
+      if (!more || !*more) break;
+      all.xyz.insert(all.xyz.end(), xyz.begin(), xyz.end());
+      const auto exact = (*stream)->exact();
+      all.exact.insert(all.exact.end(), exact.begin(), exact.end());
+    }
+    std::fclose(file);
+    return all;
+  }
+};
+
+TEST_F(FrameStreamTest, ReadsAPointCache) {
+  const std::vector<float> values{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 2, 3, 4, 5, 6, 7, 8, 1e30F};
+  const Contents all = read_all(put("a.pc2", pc2(3, 2, values)), put("a.obj", kTriangle));
+  EXPECT_EQ(all.xyz, values);
+  EXPECT_TRUE(all.exact.empty());
+}
+
+TEST_F(FrameStreamTest, ReadsDecoderOutput) {
+  const std::vector<std::int32_t> positions{0,   0, 0,  1, 0, 0, 0, 33554433, 0,
+                                            -10, 0, 10, 1, 1, 1, 0, 0,        0};
+  const Contents all = read_all(put("a.rlpd", rlpd(3, 5, -1, {0, 1, 2}, positions)), "");
+  EXPECT_EQ(all.xyz, (std::vector<float>{5, 0, -5, 5.5F, 0, -5, 5, 16777216, -5,  //
+                                         0, 0, 0, 5.5F, 0.5F, -4.5F, 5, 0, -5}));
+  EXPECT_EQ(all.exact, (std::vector<double>{5, 0, -5, 5.5, 0, -5, 5, 16777216.5, -5,  //
+                                            0, 0, 0, 5.5, 0.5, -4.5, 5, 0, -5}));
 }
 
 TEST(FrameRateText, IsExact) {

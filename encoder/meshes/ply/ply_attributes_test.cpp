@@ -94,6 +94,28 @@ TEST(PlyAttributes, ColoursMayBeFloatsWithOpacity) {
   EXPECT_EQ(wrong.notes, std::vector<std::string>{"dropped: colours outside 0 to 1"});
 }
 
+TEST(PlyAttributes, ColoursMayHave16Bits) {
+  const SingleMesh mesh = text_mesh(
+      "property ushort red\nproperty ushort green\nproperty ushort blue\n", "0 32768 65535");
+  ASSERT_EQ(mesh.attributes.sets.size(), 1U);
+  const SourceAttribute& colour = mesh.attributes.sets[0];
+  EXPECT_EQ(colour.max_value, 0U);
+  EXPECT_NEAR(colour.values[1], 0.2140411, 1e-4);
+  EXPECT_NEAR(colour.values[2], 1.0, 1e-6);
+}
+
+TEST(PlyAttributes, EachFaceHasItsColour) {
+  std::string text =
+      header("ascii", "", "property uchar red\nproperty uchar green\nproperty uchar blue\n");
+  text.replace(text.find("face 1"), 6, "face 2");
+  const SingleMesh mesh =
+      mesh_of(text + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n4 0 1 2 3 0 255 0\n");
+  ASSERT_EQ(mesh.attributes.sets.size(), 1U);
+  const SourceAttribute& colour = mesh.attributes.sets[0];
+  EXPECT_EQ(colour.values, (Floats{4095, 0, 0, 0, 4095, 0}));
+  EXPECT_EQ(colour.value_of_corner, (Indices{0, 0, 0, 1, 1, 1, 1, 1, 1}));
+}
+
 TEST(PlyAttributes, FacesMayHaveTextureCoordinatesAndColours) {
   const SingleMesh mesh =
       text_mesh("property float s\nproperty float t\n", "0 0",
@@ -130,7 +152,12 @@ TEST(PlyAttributes, FacesMayHaveMaterials) {
   EXPECT_EQ(mesh.attributes.sets[0].name, "material");
   EXPECT_EQ(mesh.attributes.sets[0].values, (Floats{5, 5, 1}));
   EXPECT_TRUE(mesh_of(text + "3 0 2 3 5\n").attributes.sets.empty());
-  EXPECT_EQ(mesh_of(text + "3 0 2 3 -1\n").notes.size(), 1U);
+  EXPECT_EQ(mesh_of(text + "3 0 2 3 65535\n").attributes.sets[0].values, (Floats{5, 5, 65535}));
+  for (const char* const number : {"-1", "65536"}) {
+    const SingleMesh wrong = mesh_of(text + "3 0 2 3 " + number + "\n");
+    EXPECT_TRUE(wrong.attributes.sets.empty()) << number;
+    EXPECT_EQ(wrong.notes.size(), 1U) << number;
+  }
 }
 
 TEST(PlyAttributes, ReadsBinaryFiles) {

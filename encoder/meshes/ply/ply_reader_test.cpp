@@ -61,6 +61,50 @@ TEST(PlyReader, ReadsEveryEncoding) {
   expect_mesh(binary(false));
 }
 
+TEST(PlyReader, ReadsEveryTypeOfNumber) {
+  const auto bits_of = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  struct Case {
+    std::vector<std::string> types;
+    std::uint64_t bits;
+    std::size_t size;
+    float value;
+  };
+  const std::vector<Case> cases{{{"char", "int8"}, 0x80, 1, -128.0F},
+                                {{"uchar", "uint8"}, 0x80, 1, 128.0F},
+                                {{"short", "int16"}, 0x8001, 2, -32767.0F},
+                                {{"ushort", "uint16"}, 0x8001, 2, 32769.0F},
+                                {{"int", "int32"}, 0x80000100, 4, -2147483392.0F},
+                                {{"uint", "uint32"}, 0x80000100, 4, 2147483904.0F},
+                                {{"float", "float32"}, 0xBF000000, 4, -0.5F},
+                                {{"double", "float64"}, bits_of(-0.75), 8, -0.75F}};
+  for (const Case& number : cases) {
+    for (const std::string& type : number.types) {
+      for (const bool little_endian : {true, false}) {
+        std::string bytes = "ply\nformat binary_";
+        bytes += (little_endian ? "little" : "big") +
+                 ("_endian 1.0\nelement vertex 1\nproperty " + type + " y\nproperty " + type +
+                  " z\nproperty uchar x\nend_header\n");
+        put(bytes, number.bits, number.size, little_endian);
+        put(bytes, 0, number.size, little_endian);
+        const auto mesh = parse_ply(bytes + "\7", "a.ply");
+        ASSERT_TRUE(mesh) << mesh.error().message;
+        EXPECT_EQ(mesh->xyz, (std::vector<float>{7, number.value, 0})) << type;
+      }
+    }
+  }
+}
+
+TEST(PlyReader, KeepsWhatFloatsLeaveOfDoubles) {
+  std::string bytes =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty double x\n"
+      "property double y\nproperty double z\nend_header\n";
+  for (const double x : {0.5, 0.1, -0.3}) put(bytes, std::bit_cast<std::uint64_t>(x), 8, true);
+  const auto mesh = parse_ply(bytes, "a.ply");
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  const auto left_of = [](double x) { return static_cast<float>(x - static_cast<float>(x)); };
+  EXPECT_EQ(mesh->left, (std::vector<float>{0, left_of(0.1), left_of(-0.3)}));
+}
+
 TEST(PlyReader, ReadsEveryLineEndOfTheHeader) {
   for (const std::string end : {"\r\n", "\r"}) {
     for (const std::string& text : {kText, binary(true)}) {

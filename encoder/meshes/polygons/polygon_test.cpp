@@ -367,7 +367,19 @@ TEST(Polygon, IsSplitInEveryFormat) {
             expected);
 }
 
-// Texture coordinates equal to positions: they stay at their corners.
+// Expects texture coordinates equal to positions: they stay at their corners.
+void expect_uv_at_positions(const InputResult<SingleMesh>& mesh) {
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  ASSERT_EQ(mesh->attributes.sets.size(), 1U);
+  const SourceAttribute& uv = mesh->attributes.sets[0];
+  ASSERT_EQ(uv.value_of_corner.size(), 3 * mesh->triangles.size());
+  for (std::size_t c = 0; c < uv.value_of_corner.size(); ++c) {
+    const std::size_t v = mesh->triangles[c / 3][c % 3];
+    EXPECT_EQ(uv.values[2 * uv.value_of_corner[c]], mesh->xyz[3 * v]) << c;
+    EXPECT_EQ(uv.values[2 * uv.value_of_corner[c] + 1], 1.0F - mesh->xyz[3 * v + 1]) << c;
+  }
+}
+
 TEST(Polygon, CarriesTheValuesOfItsCorners) {
   std::string text;
   for (const char* p : {"2 1", "1 1", "1 2", "0 2", "0 0", "2 0"}) {
@@ -376,15 +388,18 @@ TEST(Polygon, CarriesTheValuesOfItsCorners) {
   for (const char* p : {"0 0", "2 0", "2 1", "1 1", "1 2", "0 2"}) {
     text += "vt " + std::string(p) + "\n";
   }
-  const auto mesh = parse_obj(text + "f 1/3 2/4 3/5\nf 1/3 2/4 3/5 4/6 5/1 6/2\n", "l.obj");
-  ASSERT_TRUE(mesh);
-  ASSERT_EQ(mesh->attributes.sets.size(), 1U);
-  const SourceAttribute& uv = mesh->attributes.sets[0];
-  for (std::size_t c = 0; c < uv.value_of_corner.size(); ++c) {
-    const std::size_t v = mesh->triangles[c / 3][c % 3];
-    EXPECT_EQ(uv.values[2 * uv.value_of_corner[c]], mesh->xyz[3 * v]) << c;
-    EXPECT_EQ(uv.values[2 * uv.value_of_corner[c] + 1], 1.0F - mesh->xyz[3 * v + 1]) << c;
-  }
+  expect_uv_at_positions(
+      parse_obj(text + "f 1/3 2/4 3/5\nf 1/3 2/4 3/5 4/6 5/1 6/2\n", "l.obj"));
+}
+
+TEST(Polygon, CarriesTheValuesOfItsCornersInPlyFiles) {
+  expect_uv_at_positions(
+      parse_ply("ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+                "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+                "property list uchar float texcoord\nend_header\n"
+                "2 1 0\n1 1 0\n1 2 0\n0 2 0\n0 0 0\n2 0 0\n"
+                "3 0 1 2 6 2 1 1 1 1 2\n6 0 1 2 3 4 5 12 2 1 1 1 1 2 0 2 0 0 2 0\n",
+                "l.ply"));
 }
 
 }  // namespace
