@@ -157,6 +157,36 @@ TEST_F(GltfPrimitiveTest, FollowsStrides) {
   EXPECT_EQ(frame_of(*open(builder), 0), kCorners);
 }
 
+TEST_F(GltfPrimitiveTest, ColoursKeepTheirBitsAndAreWhiteWhereThereAreNone) {
+  GltfBuilder builder = one_triangle();
+  const std::vector<std::uint16_t> colours{0, 256, 65535, 1, 2, 3, 4, 5, 6};
+  Json& primitives = builder.json["meshes"][0]["primitives"];
+  primitives[0]["attributes"]["COLOR_0"] = builder.add_normalized("VEC3", colours);
+  primitives.push_back({{"attributes", {{"POSITION", 0}}}});
+  const auto source = open(builder);
+  ASSERT_EQ(source->attributes().sets.size(), 1U);
+  const SourceAttribute& set = source->attributes().sets[0];
+  EXPECT_EQ(set.name, "colour0");
+  EXPECT_EQ(set.max_value, 65535U);
+  std::vector<float> expected(colours.begin(), colours.end());
+  expected.insert(expected.end(), 9, 65535.0F);
+  EXPECT_EQ(set.values, expected);
+}
+
+TEST_F(GltfPrimitiveTest, EqualTextureCoordinatesAreReadOnce) {
+  GltfBuilder builder = one_triangle();
+  Json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["TEXCOORD_0"] = builder.add("VEC2", std::vector<float>{0, 0, 1, 0, 0, 1});
+  attributes["TEXCOORD_1"] = builder.add("VEC2", std::vector<float>{0, 0, 1, 0, 0, 0.5F});
+  attributes["TEXCOORD_2"] = builder.add("VEC2", std::vector<float>{0, 0, 1, 0, 0, 1});
+  const auto source = open(builder);
+  ASSERT_EQ(source->attributes().sets.size(), 2U);
+  EXPECT_EQ(source->attributes().sets[0].name, "uv0");
+  EXPECT_EQ(source->attributes().sets[1].name, "uv1");
+  EXPECT_EQ(source->notes(),
+            (std::vector<std::string>{"TEXCOORD_2 is equal to TEXCOORD_0: coded once"}));
+}
+
 TEST_F(GltfPrimitiveTest, ReadsMoreThan64KiBOfAnAccessor) {
   GltfBuilder builder;
   std::vector<float> xyz(3 * std::size_t{9000});

@@ -118,6 +118,38 @@ TEST_F(GltfSourceTest, FlipsTrianglesOfMirroringNodesWithSkins) {
   EXPECT_EQ(open(builder)->triangles(), (std::vector<Triangle>{{0, 2, 1}}));
 }
 
+TEST_F(GltfSourceTest, NormalsOfMirroringNodesFaceAsTheirTriangles) {
+  GltfBuilder builder = one_triangle();
+  builder.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+      builder.add("VEC3", std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1});
+  builder.json["nodes"][0]["scale"] = {1, 1, -1};
+  const auto source = open(builder);
+  EXPECT_EQ(source->triangles(), (std::vector<Triangle>{{0, 2, 1}}));
+  const SourceAttributes& all = source->attributes();
+  EXPECT_EQ(all.sets[0].values, (std::vector<float>{0, 0, -1, 0, 0, -1, 0, 0, -1}));
+  EXPECT_EQ(all.first_normals, (std::vector<float>{0, 0, -1, 0, 0, -1, 0, 0, -1}));
+}
+
+TEST_F(GltfSourceTest, FacesAsInTheFramesInWhichItIsLarge) {
+  GltfBuilder builder = one_triangle();
+  builder.push("animations", Json::object());
+  const std::size_t times = builder.add("SCALAR", std::vector<float>{0, 1});
+  const std::size_t scales =
+      builder.add("VEC3", std::vector<float>{0.1F, 0.1F, 0.1F, 1, 1, -1});
+  builder.add_channel(0, "scale", times, scales, "LINEAR");
+  EXPECT_EQ(open(builder)->triangles(), (std::vector<Triangle>{{0, 2, 1}}));
+}
+
+TEST_F(GltfSourceTest, ShowsTheFirstSceneUnlessAnotherIsChosen) {
+  GltfBuilder builder = one_triangle();
+  builder.push("nodes", {{"mesh", 0}, {"translation", {5, 0, 0}}});
+  builder.json["scenes"].push_back({{"nodes", {1}}});
+  builder.json.erase("scene");
+  EXPECT_EQ(frame_of(*open(builder), 0), kCorners);
+  builder.json["scene"] = 1;
+  EXPECT_EQ(frame_of(*open(builder), 0), (std::vector<float>{5, 0, 0, 6, 0, 0, 5, 1, 0}));
+}
+
 TEST_F(GltfSourceTest, FacesOfPrimitivesWithoutNormalsAreFlat) {
   GltfBuilder builder = one_triangle();
   Json smooth = builder.json["meshes"][0]["primitives"][0];
@@ -240,6 +272,14 @@ TEST_F(GltfSourceTest, NamesASingleClip) {
   nameless.json["animations"][0].erase("name");
   EXPECT_TRUE(open(nameless, {"all"})->clips().empty());
   EXPECT_TRUE(open(one_triangle())->clips().empty());
+}
+
+TEST_F(GltfSourceTest, LastsAsLongAsTheLongestChannel) {
+  GltfBuilder builder = moving_triangle();
+  const std::size_t short_times = builder.add("SCALAR", std::vector<float>{0, 1});
+  const std::size_t scales = builder.add("VEC3", std::vector<float>{1, 1, 1, 2, 2, 2});
+  builder.add_channel(0, "scale", short_times, scales, "LINEAR");
+  EXPECT_EQ(open(builder)->num_frames(), 61U);
 }
 
 TEST_F(GltfSourceTest, MovesRotatesAndScalesNodes) {
