@@ -6,6 +6,9 @@
 #include <cstdint>
 #include <random>
 #include <string>
+#include <vector>
+
+#include "common/codec/bits/bit_writer.h"
 
 namespace rlpc {
 namespace {
@@ -41,6 +44,23 @@ TEST(WriteStream, MetadataAreInflatedToTheirSize) {
   const Bytes payload = write_metadata(json);
   EXPECT_EQ(payload[3], json.size());
   EXPECT_EQ(inflated(payload, 4, json.size()), json);
+}
+
+// The second clip begins in the last frame of the first.
+TEST(WriteStream, ClipsAreRelativeToTheEndOfTheOneBefore) {
+  BitWriter w;
+  w.ue(1);
+  w.se(2);
+  w.ue(2);
+  w.u(8, 0);
+  w.u(8, 'a');
+  w.se(-1);
+  w.ue(6);
+  w.u(8, 1);
+  w.u(8, 'b');
+  w.u(8, 'c');
+  w.byte_alignment();
+  EXPECT_EQ(write_clip_table(std::vector<Clip>{{"a", 2, 3}, {"bc", 4, 7}}), w.take());
 }
 
 }  // namespace
