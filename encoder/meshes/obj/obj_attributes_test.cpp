@@ -153,6 +153,14 @@ TEST(ObjAttributes, MaterialsAndPartsAreNumberedAsTheyAppear) {
   EXPECT_EQ(mesh.materials.part_names, (std::vector<std::string>{"", "b", "b/c d"}));
 }
 
+TEST(ObjAttributes, GroupsOfOneMaterialAreParts) {
+  const SingleMesh mesh =
+      mesh_of(kVertices + "usemtl m\ng a\nf 1 2 3\ng b\nf 1 2 4\ng a\nf 1 3 4\n");
+  EXPECT_EQ(find(mesh, "material"), nullptr);
+  EXPECT_EQ(find(mesh, "part")->values, (Floats{0, 1, 0}));
+  EXPECT_EQ(mesh.materials.part_names, (std::vector<std::string>{"a", "b"}));
+}
+
 TEST(ObjAttributes, MemoryHasALimit) {
   const std::string text = kVertices + "vt 0 0\nvt 1 1\nvn 0 0 1\no a\nf 1/1 2/2 3/1\n" +
                            "usemtl b\nusemtl c\nf 1/1/1 2/2/1 3/1/1 4/2/1\n";

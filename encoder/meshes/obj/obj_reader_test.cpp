@@ -64,6 +64,7 @@ TEST(ObjReader, IgnoresOtherKeywords) {
   ASSERT_TRUE(mesh) << mesh.error().message;
   EXPECT_EQ(mesh->xyz, (std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, -0.5F}));
   EXPECT_EQ(mesh->triangles.size(), 1U);
+  EXPECT_EQ(mesh->material_library, "a.mtl");
 }
 
 TEST(ObjReader, JoinsContinuedLines) {

@@ -32,6 +32,10 @@ TEST(OffReader, SkipsCommentsBlankLinesAndColours) {
       "1 1 0 1 0 0 1\r\n0 1 .5 1 0 0 1\r\n\r\n4 0 1 2 3 255 0 0\r\n# end\r\n");
 }
 
+TEST(OffReader, SkipsTextureCoordinates) {
+  expect_mesh("STOFF\n4 1 0\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 .5 0 1\n4 0 1 2 3\n");
+}
+
 TEST(OffReader, EveryProperPrefixFails) {
   for (std::size_t n = 0; n + 1 < kQuad.size(); ++n) {
     const std::vector<char> exact(kQuad.begin(),
@@ -56,6 +60,9 @@ TEST(OffReader, RefusesCountsThatDoNotFitTheFile) {
   expect_error("OFF\n4294967296 1 0\n0 0 0\n",
                "\"4294967296\": expected the number of vertices");
   expect_error("OFF\n1 1 0\n0 0 0\n4000000000 0 0 0\n", "expected a vertex index");
+  std::string shorter = "OFF\n11 0 0\n";
+  for (int v = 0; v < 8; ++v) shorter += "0 0 0\n";
+  expect_error(shorter, "11 vertices and 0 faces do not fit the 59 bytes");
   expect_error("OFF\n0 0 0\n", "no vertices");
 }
 

@@ -392,6 +392,23 @@ TEST(Polygon, CarriesTheValuesOfItsCorners) {
       parse_obj(text + "f 1/3 2/4 3/5\nf 1/3 2/4 3/5 4/6 5/1 6/2\n", "l.obj"));
 }
 
+TEST(Polygon, CarriesTheNormalsOfItsCorners) {
+  const std::vector<std::vector<float>> normals{{1, 0, 0},  {0, 1, 0},  {0, 0, 1},
+                                                {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  const auto mesh = parse_obj(
+      "v 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 0\nv 2 0 0\nvn 1 0 0\nvn 0 1 0\nvn 0 0 1\n"
+      "vn -1 0 0\nvn 0 -1 0\nvn 0 0 -1\nf 1//1 2//2 3//3 4//4 5//5 6//6\n",
+      "l.obj");
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  ASSERT_EQ(mesh->attributes.sets.size(), 1U);
+  const SourceAttribute& set = mesh->attributes.sets[0];
+  for (std::size_t c = 0; c < set.value_of_corner.size(); ++c) {
+    const auto first = set.values.begin() + 3 * static_cast<long>(set.value_of_corner[c]);
+    EXPECT_EQ(std::vector<float>(first, first + 3), normals[mesh->triangles[c / 3][c % 3]])
+        << c;
+  }
+}
+
 TEST(Polygon, CarriesTheValuesOfItsCornersInPlyFiles) {
   expect_uv_at_positions(
       parse_ply("ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
