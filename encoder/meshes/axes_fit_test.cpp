@@ -113,6 +113,11 @@ TEST(AxesFit, AllowsForTurnsOfTheAnimation) {
   std::vector<Pose> frames;
   for (const float angle : {1.5F, 1.4F, 0.7F, 0.1F}) frames.push_back(rotated(body(), angle));
   EXPECT_EQ(found(body(), frames), "");
+  // They never stand, but turn farther than standing is from the axes.
+  frames.clear();
+  for (const float angle : {1.5F, 1.0F, 0.5F}) frames.push_back(rotated(body(), angle));
+  EXPECT_EQ(found(body(), frames), "");
+  EXPECT_NE(found(body(), {frames[0]}), "");
 }
 
 TEST(AxesFit, CannotTellWhatAMeshDoesNotResemble) {

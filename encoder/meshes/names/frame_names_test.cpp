@@ -79,6 +79,7 @@ TEST(FrameNames, AreInOrderOfFractions) {
   expect_order({"f_1.33.obj", "f_1.67.obj", "f_2.obj", "f_2.33.obj"});
   // Frames of versions, counted.
   expect_order({"v003.8.obj", "v003.9.obj", "v003.10.obj", "v003.11.obj"});
+  expect_order({"V003.8.obj", "V003.9.obj", "V003.11.obj", "V003.12.obj"});
   expect_order({"sh010_cloth_v003.995.mesh01.obj", "sh010_cloth_v003.998.mesh01.obj",
                 "sh010_cloth_v003.1000.mesh01.obj", "sh010_cloth_v003.1001.mesh01.obj"});
   expect_order({"take1.8.obj", "take1.9.obj", "take1.10.obj"});
@@ -117,6 +118,7 @@ TEST(FrameNames, AreRefusedWithStrangers) {
   expect_refused({"take1.obj", "take1.0001.obj", "take1.0002.obj"}, "take1.obj");
   expect_refused({"take1.0001.obj", "take1.0002.obj", "take2.0001.obj"}, "take2.0001.obj");
   expect_refused({"v1.1.obj", "v1.2.obj", "v2.1.obj", "v2.2.obj"}, "v1.1.obj");
+  expect_refused({"V1.1.obj", "V1.2.obj", "V2.1.obj", "V2.2.obj"}, "V1.1.obj");
   expect_refused({"take1.1.obj", "take1.2.obj", "take2.1.obj", "take2.2.obj"}, "take1.1.obj");
   expect_refused({"f_1.5.obj", "f_1.25.obj"}, "f_1.%g.obj for f_1.5.obj, f_1.25.obj");
 }

@@ -180,7 +180,9 @@ TEST_F(MeshSequenceFilesTest, FollowNormalsOfLaterFrames) {
     const SourceAttributes& attributes = (*source)->attributes();
     const SourceAttribute& normals = attributes.sets.at(0);
     ASSERT_EQ(attributes.later_normals.size(), num_frames - 1);
+    std::uint32_t frame = 0;
     for (const PosedNormals& later : attributes.later_normals) {
+      EXPECT_EQ(later.frame, ++frame);
       ASSERT_EQ(later.normals.size(), normals.values.size());
       for (std::size_t c = 0; c < normals.value_of_corner.size(); ++c) {
         const std::uint32_t v = (*source)->triangles()[c / 3][c % 3];
