@@ -113,7 +113,8 @@ class TangentFiles : public GltfFilesTest {
   }
 
   bool is_noted(const GltfBuilder& builder) {
-    for (const std::string& note : open(builder)->notes()) {
+    const auto source = open(builder);
+    for (const std::string& note : source->notes()) {
       if (note.find("dents become bumps") != std::string::npos) return true;
     }
     return false;
