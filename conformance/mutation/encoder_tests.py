@@ -76,7 +76,9 @@ class Workshop:
                 "CCACHE_BASEDIR": str(folder), "CCACHE_NOHASHDIR": "1",
                 "CCACHE_SLOPPINESS": "pch_defines,time_macros,include_file_mtime,"
                                      "include_file_ctime"}
-        (folder / "tmp").mkdir(parents=True, exist_ok=True)
+        # Tests that crash leave files behind.
+        shutil.rmtree(folder / "tmp", ignore_errors=True)
+        (folder / "tmp").mkdir(parents=True)
         self._copy(root)
         self._run("cmake", "--preset", "release", "-S", self._source, "-B", self._build, *options)
         names = list(dict.fromkeys(map(binary_of, self._tests)))
