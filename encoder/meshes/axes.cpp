@@ -34,6 +34,26 @@ void turn_normals(const Axes& axes, SourceAttributes& attributes) {
   }
 }
 
+// Returns the map between turned coordinates: turns back, maps, and turns.
+BoneMap turned(const Axes& axes, const BoneMap& map) {
+  BoneMap result{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& row = map[axes.from[i]];
+    for (std::size_t j = 0; j < 3; ++j) {
+      const bool negative = axes.negative[i] != axes.negative[j];
+      result[i][j] = negative ? -row[axes.from[j]] : row[axes.from[j]];
+    }
+    result[i][3] = axes.negative[i] ? -row[3] : row[3];
+  }
+  return result;
+}
+
+SourceRig turned(const Axes& axes, SourceRig rig) {
+  turn(axes, rig.rest);
+  for (SourceRig::Bone& bone : rig.bones) turn(axes, bone.pivot);
+  return rig;
+}
+
 class TurnedSource final : public FrameSource {
  public:
   TurnedSource(Shape shape, std::unique_ptr<FrameSource> source, const Axes& axes)
@@ -50,6 +70,10 @@ class TurnedSource final : public FrameSource {
     return std::nullopt;
   }
   bool is_finer_than_floats() const override { return source_->is_finer_than_floats(); }
+  void read_bones(std::uint32_t frame, std::span<BoneMap> maps) override {
+    source_->read_bones(frame, maps);
+    for (BoneMap& map : maps) map = turned(axes_, map);
+  }
 
   std::string file_of(std::uint32_t frame) const override { return source_->file_of(frame); }
 
@@ -146,6 +170,7 @@ std::string axes_text(const Axes& axes) {
 std::unique_ptr<FrameSource> turn_source(std::unique_ptr<FrameSource> source,
                                          const Axes& axes) {
   FrameSource::Shape shape = source->shape();
+  if (shape.rig) shape.rig = std::make_shared<SourceRig>(turned(axes, *shape.rig));
   const bool is_mesh_mirrored = shape.axes_of_mesh && is_mirror(*shape.axes_of_mesh);
   if (is_mirror(axes) != is_mesh_mirrored) {
     turn_over(shape.triangles);

@@ -15,6 +15,7 @@
 #include "common/codec/mesh/mesh.h"
 #include "common/result.h"
 #include "encoder/meshes/source_attribute.h"
+#include "encoder/meshes/source_rig.h"
 
 namespace rlpc {
 
@@ -53,6 +54,7 @@ class FrameSource {
     SourceMaterials materials{};
     std::uint64_t memory_bytes = 0;
     std::optional<Axes> axes_of_mesh{};
+    std::shared_ptr<const SourceRig> rig{};
   };
 
   FrameSource(const FrameSource&) = delete;
@@ -80,6 +82,8 @@ class FrameSource {
   // Returns materials, textures and names of parts: a GLB without geometry; empty: none.
   const std::string& asset() const { return shape_.asset; }
   const SourceMaterials& materials() const { return shape_.materials; }
+  // Returns the bones that move the vertices; null if the input does not say.
+  const std::shared_ptr<const SourceRig>& rig() const { return shape_.rig; }
 
   // Keeps at most `max` attributes: drops those with the highest numbers in their names, the
   // last of equal ones, and adds a note that names them.
@@ -96,6 +100,8 @@ class FrameSource {
   virtual std::optional<InputError> read_exact(std::uint32_t frame, std::span<double> xyz);
   // Whether read_exact() may differ from read_frame().
   virtual bool is_finer_than_floats() const { return false; }
+  // Computes the maps of the bones of rig() in a frame, [bone].
+  virtual void read_bones(std::uint32_t /*frame*/, std::span<BoneMap> /*maps*/) {}
   // Returns the name, for messages, of the file that holds a frame.
   virtual std::string file_of(std::uint32_t /*frame*/) const { return "input"; }
 
@@ -144,6 +150,7 @@ struct InputOptions {
   std::vector<std::string> animations{};
   bool weld = true;            // glTF only: merge vertices that coincide in every frame
   bool textures = true;        // glTF and OBJ: include images in the asset
+  bool rig = true;             // glTF only: tell the encoder the bones (FrameSource::rig())
   std::optional<Axes> axes{};  // axes to turn positions to
   // Input estimated to need more is an error. Files may claim far more than they contain.
   std::uint64_t max_memory_bytes = kUsualEncoderBytes;

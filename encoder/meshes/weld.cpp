@@ -83,6 +83,9 @@ class WeldedSource : public FrameSource {
     return std::nullopt;
   }
   bool is_finer_than_floats() const override { return source_->is_finer_than_floats(); }
+  void read_bones(std::uint32_t frame, std::span<BoneMap> maps) override {
+    source_->read_bones(frame, maps);
+  }
 
   std::string file_of(std::uint32_t frame) const override { return source_->file_of(frame); }
 
@@ -154,6 +157,10 @@ InputResult<std::unique_ptr<FrameSource>> weld(std::unique_ptr<FrameSource> sour
   shape.asset = source->asset();
   shape.materials = source->materials();
   shape.memory_bytes = source->memory_bytes();
+  if (source->rig()) {
+    shape.rig = std::make_shared<SourceRig>(rig_of_vertices(*source->rig(), vertices));
+    shape.memory_bytes += shape.rig->memory_bytes();
+  }
   if (vertices.size() < welded.size()) {
     const std::size_t merged = welded.size() - vertices.size();
     shape.notes.push_back("merged " + std::to_string(merged) + " duplicate " +

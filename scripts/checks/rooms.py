@@ -32,7 +32,7 @@ _DECODER_KINDS = _of_kinds(_DECODER_KIND)
 _PARSE_KINDS = _of_kinds(_DECODER_KIND + "/parse")
 _PARSE = {"decoder/codec/parse", "decoder/codec/parse/sequence"} | _PARSE_KINDS
 _PUBLIC_DECODER = {"decoder"}
-_CHOICES = {"encoder/codec", "encoder/meshes/frame_source.h"}
+_CHOICES = {"encoder/codec", "encoder/meshes/frame_source.h", "encoder/meshes/source_rig.h"}
 _ENCODER = _GOFS | _RECON | _CHOICES | {"encoder/codec/math", "encoder/codec/rest",
                                         "encoder/codec/spans", "encoder/codec/write"}
 _ENCODER_KINDS = _of_kinds("encoder/codec/kinds/{}")

@@ -253,7 +253,8 @@ MORE = [["--gof", "all"], ["--gof", "1"], ["--gof", "5"], ["--gof", "0"], ["--ke
         ["--max-memory", "20MB"], ["--max-memory", "1kB"], ["--clip", "a:0-1"], ["--clip", ":"],
         ["--uv-bits", "4"], ["--normals", "smoothing"], ["--exact-attributes"], ["--json"],
         ["--low-delay"], ["--low-delay", "--box", "-2", "-2", "-2", "9", "9", "9"],
-        ["--qu", "8", "--qc", "8"], ["--dry-run"], ["--track-levels", "2"], ["--no-weld"]]
+        ["--qu", "8", "--qc", "8"], ["--dry-run"], ["--track-levels", "2"], ["--no-weld"],
+        ["--no-input-rig"]]
 
 
 def some_options(numbers):

@@ -8,6 +8,7 @@
 #include "common/files/float_position.h"
 #include "common/parallel/for_each.h"
 #include "encoder/codec/kinds/cluster/cluster_gof_kind.h"
+#include "encoder/codec/kinds/skinned/input_rig.h"
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/sequence/choices/gof_kinds.h"
 #include "encoder/codec/spans/kind_search.h"
@@ -45,6 +46,20 @@ SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettin
 
 InputResult<SpanFrames> SequenceCoding::read_frames(FrameSource& source,
                                                     const FrameRange& span) const {
+  auto frames = read_positions(source, span);
+  if (!frames || !source.rig() || settings_.profile == Profile::kBaseline) return frames;
+  const std::size_t num_bones = source.rig()->bones.size();
+  std::vector<BoneMap> maps(num_bones * span.count);
+  for (std::uint32_t f = 0; f < span.count; ++f) {
+    source.read_bones(span.first + f, std::span(maps).subspan(f * num_bones, num_bones));
+  }
+  frames->input_rig =
+      rig_of_span(*source.rig(), maps, header_.grid, connectivity_.input_vertex);
+  return frames;
+}
+
+InputResult<SpanFrames> SequenceCoding::read_positions(FrameSource& source,
+                                                       const FrameRange& span) const {
   const std::uint32_t n = header_.num_vertices;
   SpanFrames frames{n, span.count, std::vector<double>(std::size_t{n} * span.count * 3),
                     span.first, span.num_gofs};
@@ -67,7 +82,7 @@ InputResult<std::vector<DecodedFrame>> SequenceCoding::nearest_frames(
     FrameSource& source, std::span<const std::uint32_t> numbers) const {
   std::vector<DecodedFrame> nearest;
   for (const std::uint32_t number : numbers) {
-    const auto frames = read_frames(source, {number, 1});
+    const auto frames = read_positions(source, {number, 1});
     if (!frames) return frames.error();
     std::vector<std::int32_t>& positions =
         nearest.emplace_back(DecodedFrame{number, {}}).positions;

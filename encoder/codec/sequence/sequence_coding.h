@@ -56,8 +56,8 @@ class SequenceCoding {
   // Returns frames of the source, as positions on the grid in decoded order.
   InputResult<std::vector<DecodedFrame>> nearest_frames(
       FrameSource& source, std::span<const std::uint32_t> numbers) const;
-  // Returns the frames of a span, in decoded vertex order and grid units. span: frames of the
-  // source. Errors: errors of the source.
+  // Returns the frames of a span, in decoded vertex order and grid units, and how the bones of
+  // the source move them. span: frames of the source. Errors: errors of the source.
   InputResult<SpanFrames> read_frames(FrameSource& source, const FrameRange& span) const;
   // Whether there is a further kind of GOF, for targets that the compared kinds miss.
   bool has_last_resort() const { return last_resort_ != nullptr; }
@@ -83,6 +83,7 @@ class SequenceCoding {
     std::vector<double> original;
     MetricsAccumulator metrics;
   };
+  InputResult<SpanFrames> read_positions(FrameSource& source, const FrameRange& span) const;
   InputResult<std::vector<MeasuredFrame>> measure_frames(const SharedSource& source,
                                                          const FrameRange& span,
                                                          const FrameRange& some,

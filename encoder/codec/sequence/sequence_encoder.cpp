@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/verify/stream_buffer.h"
+#include "encoder/codec/kinds/skinned/input_rig.h"
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/sequence/choices/gof_cuts.h"
 #include "encoder/codec/sequence/choices/level_choice.h"
@@ -121,10 +122,15 @@ InputResult<GridChoice> SequenceEncoder::first_grid() const {
   return grid_of_bits(extent_, static_cast<int>(target.value));
 }
 
+SourceMemory SequenceEncoder::source_memory() const {
+  if (!source_.rig()) return {source_.memory_bytes()};
+  const std::uint64_t n = source_.num_vertices();
+  return {source_.memory_bytes(), (pose_bytes(source_.rig()->bones.size()) + n - 1) / n};
+}
+
 std::uint32_t SequenceEncoder::longest_span_of(const SequenceHeader& header) const {
-  return settings_.profile == Profile::kHigh
-             ? longest_span(settings_, header, {source_.memory_bytes()})
-             : longest_gof_;
+  return settings_.profile == Profile::kHigh ? longest_span(settings_, header, source_memory())
+                                             : longest_gof_;
 }
 
 // Returns the likely step, in the unit of the coordinates.
@@ -150,7 +156,7 @@ std::optional<InputError> SequenceEncoder::allot_memory(const SequenceHeader& he
   const std::uint32_t largest = std::min(longest_span_of(header), header.num_frames);
   const auto threads = [&](bool keeps) {
     return check_memory(settings_, header, largest, keeps ? header.num_frames : 0,
-                        {source_.memory_bytes()});
+                        source_memory());
   };
   // The data for measuring cuts is smaller than an analysis.
   const bool keeps_cuts = settings_.temporal_layers() > 1;

@@ -11,6 +11,7 @@
 #include "encoder/codec/report.h"
 #include "encoder/codec/sequence/attribute_stage.h"
 #include "encoder/codec/sequence/choices/grid_choice.h"
+#include "encoder/codec/sequence/memory_need.h"
 #include "encoder/codec/sequence/sequence_coding.h"
 #include "encoder/codec/sequence/span_batch.h"
 #include "encoder/codec/sequence/stream_assembly.h"
@@ -38,6 +39,7 @@ class SequenceEncoder {
  private:
   std::optional<InputError> prepare();
   std::optional<InputError> survey(SequenceHeader& header);
+  SourceMemory source_memory() const;
   std::uint32_t longest_span_of(const SequenceHeader& header) const;
   double likely_step(const SequenceHeader& header) const;
   std::optional<InputError> lengthen_gofs(const SequenceHeader& header);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "common/codec/mesh/mesh.h"
 #include "common/parallel/for_each.h"
 #include "encoder/codec/spans/frame_range.h"
+#include "encoder/codec/spans/rig.h"
 
 namespace rlpc {
 
@@ -21,6 +23,7 @@ struct SpanFrames {
   std::uint32_t first_frame = 0;  // number in the sequence
   std::uint32_t num_gofs = 1;     // GOFs that the span is divided into
   bool has_followers = false;     // later spans may use the shared rig of this one
+  std::shared_ptr<const Rig> input_rig = {};  // the rig of the input; null: not known
 
   // Returns the GOFs, with frames counted from the start of the span.
   std::vector<FrameRange> gofs() const { return equal_ranges(num_frames, num_gofs); }

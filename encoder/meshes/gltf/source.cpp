@@ -11,6 +11,7 @@
 #include "encoder/meshes/gltf/attributes.h"
 #include "encoder/meshes/gltf/frame_grid.h"
 #include "encoder/meshes/gltf/model_pose.h"
+#include "encoder/meshes/gltf/rig.h"
 #include "encoder/meshes/input_file.h"
 #include "encoder/meshes/weld.h"
 
@@ -117,11 +118,12 @@ void add_notes_of_time(const GltfModel& model, const GltfFrameGrid& grid,
 
 class GltfSource : public FrameSource {
  public:
-  GltfSource(Shape shape, std::string path, GltfModel model, GltfFrameGrid grid,
+  GltfSource(Shape shape, std::string path, GltfModel model, GltfRig rig, GltfFrameGrid grid,
              std::vector<std::uint32_t> first_frame)
       : FrameSource(std::move(shape)),
         path_(std::move(path)),
         model_(std::move(model)),
+        rig_(std::move(rig)),
         grid_(std::move(grid)),
         first_frame_(std::move(first_frame)) {}
 
@@ -134,6 +136,9 @@ class GltfSource : public FrameSource {
     return std::nullopt;
   }
   bool is_finer_than_floats() const override { return true; }
+  void read_bones(std::uint32_t frame, std::span<BoneMap> maps) override {
+    map_bones(rig_, pose_at(model_, first_frame_, grid_, frame), maps);
+  }
 
   std::string file_of(std::uint32_t /*frame*/) const override { return path_; }
 
@@ -153,6 +158,7 @@ class GltfSource : public FrameSource {
 
   std::string path_;
   GltfModel model_;
+  GltfRig rig_;
   GltfFrameGrid grid_;
   std::vector<std::uint32_t> first_frame_;  // [clip], then the total number of frames
 };
@@ -187,16 +193,22 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
                           "triangles show their back");
   }
   shape.asset = std::move(model->asset);
-  shape.attributes = gltf_attributes(*model, shape.triangles, pose(0), sampled);
+  const GltfPose first_pose = pose(0);
+  shape.attributes = gltf_attributes(*model, shape.triangles, first_pose, sampled);
+  std::vector<const GltfPose*> poses{&first_pose};
+  for (const SampledPoses::Later& later : sampled.later) poses.push_back(&later.pose);
+  GltfRig rig = options.rig ? gltf_rig(*model, poses) : GltfRig{};
+  shape.rig = rig.rig;
   shape.files = model->files;
   shape.clips = clips_of(*model, *first_frame);
   shape.memory_bytes = model->memory_bytes;
   // Decoded positions of these frames are kept too.
   for (const PosedNormals& later : shape.attributes.later_normals)
     shape.memory_bytes += 4 * sizeof(float) * later.normals.size();
+  if (shape.rig) shape.memory_bytes += shape.rig->memory_bytes();
   if (!options.weld) drop_degenerate(shape);
   std::unique_ptr<FrameSource> source = std::make_unique<GltfSource>(
-      std::move(shape), name, std::move(*model), grid, std::move(*first_frame));
+      std::move(shape), name, std::move(*model), std::move(rig), grid, std::move(*first_frame));
   if (options.weld) {
     auto welded = weld(std::move(source));
     if (!welded) return welded;

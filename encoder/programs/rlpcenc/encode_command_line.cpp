@@ -190,6 +190,9 @@ void add_input_options(CLI::App& app, EncodeCommandLine& line) {
   add_off_switch(app, "--no-weld", line.options.input.weld,
                  "glTF: keep vertices that coincide in every frame apart")
       ->group(kInput);
+  add_off_switch(app, "--no-input-rig", line.options.input.rig,
+                 "glTF: look for bones as in a point cache, without those of the file")
+      ->group(kMoreInput);
 }
 
 void add_quality_options(CLI::App& app, EncodeCommandLine& line) {

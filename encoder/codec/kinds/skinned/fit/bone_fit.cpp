@@ -91,14 +91,7 @@ RigBone rig_bone(const TreeBone& bone, const std::vector<Motion>& motion) {
   for (const Motion& m : motion) {
     const Vec3d origin = moved(m, bone.pivot);
     RigPose pose{rotation_quaternion(m.leftCols<3>()), {origin(0), origin(1), origin(2)}};
-    if (!result.poses.empty()) {
-      const auto& before = result.poses.back().rotation;
-      double same = 0.0;
-      for (std::size_t k = 0; k < 4; ++k) same += before[k] * pose.rotation[k];
-      if (same < 0.0) {
-        for (double& q : pose.rotation) q = -q;
-      }
-    }
+    if (!result.poses.empty()) keep_sign(result.poses.back().rotation, pose.rotation);
     result.poses.push_back(pose);
   }
   return result;

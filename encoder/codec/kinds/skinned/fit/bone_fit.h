@@ -12,7 +12,7 @@
 #include "encoder/codec/kinds/skinned/fit/bone_estimate.h"
 #include "encoder/codec/kinds/skinned/fit/bone_poses.h"
 #include "encoder/codec/kinds/skinned/fit/bone_solver.h"
-#include "encoder/codec/kinds/skinned/fit/rig.h"
+#include "encoder/codec/spans/rig.h"
 #include "encoder/codec/spans/sample_size.h"
 #include "encoder/codec/spans/span_frames.h"
 

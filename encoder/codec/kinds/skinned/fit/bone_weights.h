@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "encoder/codec/kinds/skinned/fit/rig.h"
+#include "encoder/codec/spans/rig.h"
 
 namespace rlpc {
 

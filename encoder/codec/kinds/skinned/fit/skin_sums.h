@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "encoder/codec/kinds/skinned/fit/rig.h"
 #include "encoder/codec/kinds/skinned/fit/rigid_motion.h"
+#include "encoder/codec/spans/rig.h"
 
 namespace rlpc {
 

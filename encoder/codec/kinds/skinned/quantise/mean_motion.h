@@ -9,8 +9,8 @@
 
 #include "common/codec/kinds/skinned/recon/bones.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
-#include "encoder/codec/kinds/skinned/fit/rig.h"
 #include "encoder/codec/kinds/skinned/tracks/track_coding.h"
+#include "encoder/codec/spans/rig.h"
 #include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {

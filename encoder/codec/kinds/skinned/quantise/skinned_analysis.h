@@ -10,10 +10,10 @@
 #include "common/codec/kinds/skinned/recon/bones.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "common/codec/mesh/ordered_mesh.h"
-#include "encoder/codec/kinds/skinned/fit/rig.h"
 #include "encoder/codec/kinds/skinned/tracks/track_coding.h"
 #include "encoder/codec/math/principal_components.h"
 #include "encoder/codec/settings.h"
+#include "encoder/codec/spans/rig.h"
 #include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {

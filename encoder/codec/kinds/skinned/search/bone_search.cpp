@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/parallel/for_each.h"
+#include "encoder/codec/kinds/skinned/fit/rig_joints.h"
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/spans/component_cost.h"
 #include "encoder/codec/spans/lagrangian.h"
@@ -223,6 +224,35 @@ SkinnedTrial BoneSearch::try_requested(const SkinnedTrials& trials) {
   return std::move(*best);
 }
 
+bool BoneSearch::has_input_rig() const {
+  return frames_.input_rig != nullptr && context_.settings.main.bones == 0;
+}
+
+SkinnedCandidate BoneSearch::input_rig(double step) const {
+  Rig rig = *frames_.input_rig;
+  const double worth =
+      lambda(step) * expected_bone_bits(unsteadiness(frames_), frames_, rig.bones.size(), step);
+  fix_joints(0.5 * worth, rig);  // saves three of six values per pose
+  return {std::move(rig), {}, settings_};
+}
+
+// Whether no bones need to be fitted, as the rig of the input is clearly better than a single
+// bone. In tiny GOFs, where a fit takes a tenth of a second, it is compared with all others.
+bool BoneSearch::follows_input_rig(double step) {
+  constexpr std::uint64_t kTiny = std::uint64_t{1} << 15;  // fixed: time; positions
+  if (follows_input_rig_) return *follows_input_rig_;
+  const bool is_tiny = context_.settings.preset != Preset::kFast &&
+                       std::uint64_t{frames_.num_vertices} * frames_.num_frames <= kTiny;
+  if (!has_input_rig() || is_tiny) return follows_input_rig_.emplace(false);
+  start_all();
+  const SkinnedTrials trials(context_, frames_, step);
+  std::array<BestTrial, 2> drafts;
+  for_each(2, [&](std::size_t i) {
+    drafts[i] = trials.run(i == 0 ? one_bone(step) : input_rig(step));
+  });
+  return follows_input_rig_.emplace(is_clearly_better(*drafts[1], *drafts[0]));
+}
+
 // Returns bones that may be worth their bits, the most likely first: their expected cost is
 // less than that of a single bone, and exceeds the least by no more than estimates are wrong.
 // In small GOFs, where a draft takes a tenth of a second, unlikely ones follow, one for each
@@ -274,6 +304,7 @@ SkinnedCandidate BoneSearch::likeliest(double step) {
   // this fraction of a single one, of which the expected cost is too high: it leaves out what
   // adaptive weights predict.
   constexpr double kWithoutTrial = 0.55;
+  if (follows_input_rig(step)) return input_rig(step);
   grow_all(step);
   const std::vector<Candidate> list = candidates(step);
   const bool fast = context_.settings.preset == Preset::kFast;
@@ -338,30 +369,39 @@ bool BoneSearch::is_clearly_better(const SkinnedTrial& draft, const SkinnedTrial
 SkinnedTrial BoneSearch::search(const SkinnedTrials& trials,
                                 std::optional<double> wanted_error) {
   if (context_.settings.main.bones > 0) return try_requested(trials);
+  if (follows_input_rig(trials.step())) {
+    BestTrial one = try_one_bone(trials);
+    BestTrial many = trials.run(input_rig(trials.step()));
+    progress_(kCompared);
+    std::array<BestTrial, 2> both{std::move(one), std::move(many)};
+    return std::move(*both[best_of(both, trials, wanted_error)]);
+  }
   grow_all(trials.step());
   std::vector<BestTrial> drafts;
   drafts.emplace_back(try_one_bone(trials));
+  if (has_input_rig()) drafts.emplace_back(trials.run(input_rig(trials.step())));
+  const std::size_t num_given = drafts.size();  // not fitted
   const std::vector<Candidate> list = candidates(trials.step());
-  drafts.resize(list.size() + 1);
+  drafts.resize(num_given + list.size());
   std::atomic<std::size_t> done = 0;
   for_each(list.size(), [&](std::size_t i) {
     Growth& growth = growths_[list[i].growth];
     Growth::Bones& bones = growth.bones[list[i].bones];
-    drafts[i + 1] = trials.run(candidate(growth, bones, trials.step()));
+    drafts[num_given + i] = trials.run(candidate(growth, bones, trials.step()));
     const auto part = static_cast<double>(++done) / static_cast<double>(list.size());
     progress_(kFitted + (kDrafted - kFitted) * part);
   });
   const auto num_likely = static_cast<std::size_t>(
       std::count_if(list.begin(), list.end(), [](const Candidate& c) { return c.is_likely; }));
   const std::span<const BestTrial> all = drafts;
-  std::size_t best = best_of(all.first(num_likely + 1), trials, wanted_error);
-  for (std::size_t i = num_likely + 1; i < drafts.size(); ++i) {
+  std::size_t best = best_of(all.first(num_given + num_likely), trials, wanted_error);
+  for (std::size_t i = num_given + num_likely; i < drafts.size(); ++i) {
     if (is_clearly_better(*drafts[i], *drafts[best])) best = i;
   }
   progress_(kCompared);
   BestTrial cheapest = std::move(drafts[best]);
-  if (best > 0 && context_.settings.preset == Preset::kSlow) {
-    BestTrial polished = polish(trials, list[best - 1]);
+  if (best >= num_given && context_.settings.preset == Preset::kSlow) {
+    BestTrial polished = polish(trials, list[best - num_given]);
     if (polished) cheapest = cheaper(std::move(cheapest), std::move(*polished));
   }
   return std::move(*cheapest);

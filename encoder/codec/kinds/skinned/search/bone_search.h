@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "encoder/codec/kinds/skinned/fit/bone_fit.h"
-#include "encoder/codec/kinds/skinned/fit/rig.h"
 #include "encoder/codec/kinds/skinned/search/skinned_context.h"
 #include "encoder/codec/kinds/skinned/search/skinned_trial.h"
+#include "encoder/codec/spans/rig.h"
 #include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
@@ -78,6 +78,9 @@ class BoneSearch {
   SkinnedCandidate candidate(Growth& growth, Growth::Bones& bones, double step) const;
   SkinnedTrial try_one_bone(const SkinnedTrials& trials);
   SkinnedTrial try_requested(const SkinnedTrials& trials);
+  bool has_input_rig() const;
+  SkinnedCandidate input_rig(double step) const;
+  bool follows_input_rig(double step);
   std::vector<Candidate> candidates(double step);
   bool is_better(const SkinnedTrial& second, const SkinnedTrial& first,
                  const SkinnedTrials& trials, double wanted_error) const;
@@ -96,7 +99,9 @@ class BoneSearch {
   // Ratio of the costs of a single bone: the expected cost ignores what adaptive weights
   // predict. At most 1, as other errors of the estimate are common to all numbers of bones.
   double actual_to_expected_ = 1.0;
-  bool is_compared_ = false;            // actual_to_expected_ is known
+  bool is_compared_ = false;  // actual_to_expected_ is known
+  // Whether the rig of the input is clearly better than a single bone; none: not yet known.
+  std::optional<bool> follows_input_rig_;
   std::optional<SkinnedAnalysis> one_;  // draft of a single bone
   std::function<void(double)> progress_ = [](double) {};
 };

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "encoder/codec/kinds/skinned/fit/rig.h"
 #include "encoder/codec/kinds/skinned/quantise/skinned_analysis.h"
 #include "encoder/codec/kinds/skinned/search/skinned_context.h"
+#include "encoder/codec/spans/rig.h"
 #include "encoder/codec/spans/span_coder.h"
 #include "encoder/codec/spans/span_frames.h"
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -22,6 +23,16 @@ struct RigBone {
   bool pinned = false;         // its pivot moves with the parent
   std::vector<RigPose> poses;  // [num_frames]
 };
+
+// Negates a quaternion if that is nearer to the one before it: both signs are one rotation, but
+// tracks are smooth in one of them.
+inline void keep_sign(const std::array<double, 4>& before, std::array<double, 4>& rotation) {
+  double same = 0.0;
+  for (std::size_t k = 0; k < 4; ++k) same += before[k] * rotation[k];
+  if (same < 0.0) {
+    for (double& q : rotation) q = -q;
+  }
+}
 
 struct RigWeight {
   std::uint32_t bone = 0;

@@ -1,0 +1,207 @@
+#include "encoder/codec/kinds/skinned/input_rig.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "common/codec/kinds/skinned/skinned_gof.h"
+#include "encoder/codec/kinds/skinned/fit/rigid_motion.h"
+#include "encoder/codec/math/det_math.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);  // fixed: no bone
+constexpr double kSame = 0.125;  // fixed: grid steps, below what rounding to the grid adds
+
+Motion motion_of(const BoneMap& map) {
+  Motion motion;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      motion(static_cast<int>(i), static_cast<int>(j)) = map[i][j];
+    }
+  }
+  return motion;
+}
+
+Vec3d point_of(const double* xyz) { return {xyz[0], xyz[1], xyz[2]}; }
+
+// Makes the rig of a span from that of a source, which it keeps a reference to.
+class RigMaker {
+ public:
+  RigMaker(const SourceRig& from, std::span<const BoneMap> maps, const Grid& grid)
+      : from_(from), grid_(grid), per_step_(exact_exp2(-grid.log2_step)) {
+    for (const BoneMap& map : maps) maps_.push_back(motion_of(map));
+  }
+
+  Rig make(std::span<const std::uint32_t> input_vertex) {
+    merge_still_bones();
+    drop_idle_bones();
+    Rig rig;
+    for (std::size_t b = 0; b < num_bones(); ++b) {
+      if (is_kept_[b]) add_bone(b, rig);
+    }
+    for (const std::uint32_t v : input_vertex) {
+      rig.rest.push_back(on_grid(point_of(&from_.rest[3 * std::size_t{v}])));
+      rig.weights.push_back(weights_of(v));
+    }
+    return rig;
+  }
+
+ private:
+  std::size_t num_bones() const { return from_.bones.size(); }
+  std::size_t num_frames() const { return maps_.size() / num_bones(); }
+  const Motion& map(std::size_t frame, std::size_t bone) const {
+    return maps_[frame * num_bones() + bone];
+  }
+
+  Point on_grid(const Vec3d& p) const {
+    Point result;
+    for (std::size_t c = 0; c < 3; ++c) {
+      result[c] = p(static_cast<int>(c)) * per_step_ - static_cast<double>(grid_.origin[c]);
+    }
+    return result;
+  }
+
+  // Returns the points that show how a bone moves: the corners of the box of its vertices, and
+  // the joints of its children.
+  std::vector<std::vector<Vec3d>> points_of_bones() const {
+    std::vector<std::vector<Vec3d>> points(num_bones());
+    std::vector<Vec3d> min(num_bones());
+    std::vector<Vec3d> max(num_bones());
+    std::vector<bool> has(num_bones());
+    for (std::size_t v = 0; v + 1 < from_.first_influence.size(); ++v) {
+      const Vec3d p = point_of(&from_.rest[3 * v]);
+      for (auto i = from_.first_influence[v]; i < from_.first_influence[v + 1]; ++i) {
+        const std::size_t b = from_.influences[i].bone;
+        min[b] = has[b] ? Vec3d(min[b].cwiseMin(p)) : p;
+        max[b] = has[b] ? Vec3d(max[b].cwiseMax(p)) : p;
+        has[b] = true;
+      }
+    }
+    for (std::size_t b = 0; b < num_bones(); ++b) {
+      if (from_.bones[b].parent >= 0) {
+        points[static_cast<std::size_t>(from_.bones[b].parent)].push_back(
+            point_of(from_.bones[b].pivot.data()));
+      }
+      for (unsigned corner = 0; has[b] && corner < 8; ++corner) {
+        Vec3d p;
+        for (int c = 0; c < 3; ++c) p(c) = (corner >> c & 1U) != 0 ? max[b](c) : min[b](c);
+        points[b].push_back(p);
+      }
+    }
+    return points;
+  }
+
+  // Finds, for each bone, the one that it is merged with: itself, or one above it.
+  void merge_still_bones() {
+    const auto points = points_of_bones();
+    bone_of_.resize(num_bones());
+    for (std::size_t b = 0; b < num_bones(); ++b) {
+      bone_of_[b] = b;
+      if (from_.bones[b].parent < 0) continue;
+      const std::size_t parent = bone_of_[static_cast<std::size_t>(from_.bones[b].parent)];
+      if (is_still(parent, b, points[b])) bone_of_[b] = parent;
+    }
+  }
+
+  // Drops bones that no vertex follows, and that join fewer than two others.
+  void drop_idle_bones() {
+    is_kept_.assign(num_bones(), false);
+    parent_.assign(num_bones(), kNone);
+    std::vector<bool> has_vertices(num_bones());
+    for (const SourceRig::Influence& i : from_.influences)
+      has_vertices[bone_of_[i.bone]] = true;
+    std::vector<std::vector<std::size_t>> children(num_bones());
+    for (std::size_t b = num_bones(); b-- > 0;) {
+      if (bone_of_[b] != b) continue;
+      const std::size_t parent =
+          from_.bones[b].parent < 0 ? kNone
+                                    : bone_of_[static_cast<std::size_t>(from_.bones[b].parent)];
+      is_kept_[b] = has_vertices[b] || children[b].size() > 1;
+      if (is_kept_[b]) children[b].push_back(b);
+      for (const std::size_t child : children[b]) {
+        if (is_kept_[b] && child != b) continue;
+        parent_[child] = parent;
+        if (parent != kNone) children[parent].push_back(child);
+      }
+    }
+  }
+
+  bool is_still(std::size_t parent, std::size_t bone, std::span<const Vec3d> points) const {
+    for (std::size_t f = 0; f < num_frames(); ++f) {
+      for (const Vec3d& p : points) {
+        const Vec3d gap = moved(map(f, bone), p) - moved(map(f, parent), p);
+        if (!(gap.norm() * per_step_ <= kSame)) return false;
+      }
+    }
+    return true;
+  }
+
+  void add_bone(std::size_t b, Rig& rig) {
+    place_.resize(num_bones());
+    place_[b] = static_cast<std::uint32_t>(rig.bones.size());
+    RigBone& bone = rig.bones.emplace_back();
+    if (parent_[b] != kNone) bone.parent = static_cast<std::int32_t>(place_[parent_[b]]);
+    const Vec3d pivot = point_of(from_.bones[b].pivot.data());
+    bone.pivot = on_grid(pivot);
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    for (std::size_t f = 0; f < num_frames(); ++f) {
+      rotation = closest_rotation(map(f, b).leftCols<3>(), rotation);
+      RigPose pose{rotation_quaternion(rotation), on_grid(moved(map(f, b), pivot))};
+      if (!bone.poses.empty()) keep_sign(bone.poses.back().rotation, pose.rotation);
+      bone.poses.push_back(pose);
+    }
+  }
+
+  std::vector<RigWeight> weights_of(std::uint32_t v) const {
+    std::vector<RigWeight> weights;
+    double sum = 0.0;
+    for (auto i = from_.first_influence[v]; i < from_.first_influence[v + 1]; ++i) {
+      const std::uint32_t bone = place_[bone_of_[from_.influences[i].bone]];
+      const auto weight = static_cast<double>(from_.influences[i].weight);
+      const auto same = std::find_if(weights.begin(), weights.end(),
+                                     [&](const RigWeight& w) { return w.bone == bone; });
+      if (same == weights.end()) {
+        weights.push_back({bone, weight});
+      } else {
+        same->weight += weight;
+      }
+    }
+    std::stable_sort(
+        weights.begin(), weights.end(),
+        [](const RigWeight& a, const RigWeight& b) { return a.weight > b.weight; });
+    if (weights.size() > kMaxExtraBones) weights.resize(kMaxExtraBones);
+    for (const RigWeight& w : weights) sum += w.weight;
+    for (RigWeight& w : weights) w.weight /= sum;
+    return weights;
+  }
+
+  const SourceRig& from_;
+  const Grid& grid_;
+  double per_step_;
+  std::vector<Motion> maps_;          // [frame][bone]
+  std::vector<std::size_t> bone_of_;  // [bone], the one that it is merged with, or itself
+  std::vector<bool> is_kept_;         // [bone]
+  std::vector<std::size_t> parent_;   // [bone], those kept; kNone: none
+  std::vector<std::uint32_t> place_;  // [bone] of the source, its index in the rig
+};
+
+}  // namespace
+
+std::shared_ptr<const Rig> rig_of_span(const SourceRig& source, std::span<const BoneMap> maps,
+                                       const Grid& grid,
+                                       std::span<const std::uint32_t> input_vertex) {
+  auto rig = std::make_shared<Rig>(RigMaker(source, maps, grid).make(input_vertex));
+  const std::size_t count = rig->bones.size();
+  if (count < 2 || count > kLevels.back().max_clusters) return nullptr;
+  return rig;
+}
+
+std::uint64_t pose_bytes(std::size_t num_bones) {
+  // While the rig is made, maps and motions; then the rig, and two candidates of the search.
+  return (sizeof(BoneMap) + sizeof(Motion) + 3 * sizeof(RigPose)) * num_bones;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,29 @@
+// The rig of an input (encoder/meshes/source_rig.h), as a span of frames is analysed with it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "common/codec/syntax/sequence_header.h"
+#include "encoder/codec/spans/rig.h"
+#include "encoder/meshes/source_rig.h"
+
+namespace rlpc {
+
+// Returns the rig with the poses of the frames of a span, in grid units: rigid motions, the
+// nearest to the maps of the bones. Bones that do not move relative to their parent are merged
+// with it; those that no vertex follows are dropped, unless they join others. Null if fewer
+// than two bones are left, or too many.
+//
+//   maps          [frame][bone]
+//   input_vertex  [decoded vertex], its index in the source
+std::shared_ptr<const Rig> rig_of_span(const SourceRig& source, std::span<const BoneMap> maps,
+                                       const Grid& grid,
+                                       std::span<const std::uint32_t> input_vertex);
+
+// Returns the estimated memory of the poses of so many bones in a frame.
+std::uint64_t pose_bytes(std::size_t num_bones);
+
+}  // namespace rlpc

@@ -1,0 +1,187 @@
+#include "encoder/codec/kinds/skinned/input_rig.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "encoder/codec/kinds/skinned/fit/bone_fit.h"
+#include "encoder/meshes/frame_source.h"
+
+namespace rlpc {
+namespace {
+
+constexpr std::uint32_t kFrames = 12;
+
+// Bones that turn about z, each relative to its parent, at its pivot.
+class Skeleton final : public FrameSource {
+ public:
+  // turn[b]: speed of bone b, in radians per frame.
+  Skeleton(SourceRig rig, std::vector<double> turn)
+      : FrameSource(shape_of(std::move(rig))), turn_(std::move(turn)) {}
+
+  std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
+    std::vector<BoneMap> maps(rig()->bones.size());
+    read_bones(frame, maps);
+    for (std::uint32_t v = 0; v < num_vertices(); ++v) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        double sum = 0.0;
+        double total = 0.0;
+        for (auto i = rig()->first_influence[v]; i < rig()->first_influence[v + 1]; ++i) {
+          const SourceRig::Influence& influence = rig()->influences[i];
+          const auto& row = maps[influence.bone][c];
+          double x = row[3];
+          for (std::size_t k = 0; k < 3; ++k) x += row[k] * rig()->rest[3 * v + k];
+          sum += static_cast<double>(influence.weight) * x;
+          total += static_cast<double>(influence.weight);
+        }
+        xyz[3 * v + c] = static_cast<float>(sum / total);
+      }
+    }
+    return std::nullopt;
+  }
+
+  void read_bones(std::uint32_t frame, std::span<BoneMap> maps) override {
+    for (std::size_t b = 0; b < maps.size(); ++b) {
+      const SourceRig::Bone& bone = rig()->bones[b];
+      const double angle = turn_[b] * frame;
+      const double c = std::cos(angle);
+      const double s = std::sin(angle);
+      const auto& p = bone.pivot;
+      const BoneMap turned{{{c, -s, 0, p[0] - c * p[0] + s * p[1]},
+                            {s, c, 0, p[1] - s * p[0] - c * p[1]},
+                            {0, 0, 1, 0}}};
+      maps[b] = turned;
+      if (bone.parent < 0) continue;
+      const BoneMap& above = maps[static_cast<std::size_t>(bone.parent)];
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) {
+          double sum = j == 3 ? above[i][3] : 0.0;
+          for (std::size_t k = 0; k < 3; ++k) sum += above[i][k] * turned[k][j];
+          maps[b][i][j] = sum;
+        }
+      }
+    }
+  }
+
+ private:
+  static Shape shape_of(SourceRig rig) {
+    Shape shape;
+    shape.num_vertices = static_cast<std::uint32_t>(rig.rest.size() / 3);
+    shape.num_frames = kFrames;
+    shape.rig = std::make_shared<SourceRig>(std::move(rig));
+    return shape;
+  }
+
+  std::vector<double> turn_;
+};
+
+// A chain of bones along x, one unit apart, each with two vertices. weights[b]: what they
+// follow of bone b, in any unit; the rest is that of bone 0.
+SourceRig chain(const std::vector<float>& weights) {
+  SourceRig rig;
+  rig.first_influence.push_back(0);
+  for (std::size_t b = 0; b < weights.size(); ++b) {
+    const auto x = static_cast<double>(b);
+    rig.bones.push_back({static_cast<std::int32_t>(b) - 1, {x, 0, 0}});
+    for (const double y : {0.5, -0.5}) {
+      rig.rest.insert(rig.rest.end(), {x + 0.5, y, 0.25});
+      if (weights[b] > 0) rig.influences.push_back({static_cast<std::uint32_t>(b), weights[b]});
+      if (weights[b] < 2) rig.influences.push_back({0, 2 - weights[b]});
+      rig.first_influence.push_back(rig.influences.size());
+    }
+  }
+  return rig;
+}
+
+Grid fine_grid() {
+  Grid grid;
+  grid.log2_step = -12;
+  grid.origin = {100, -200, 300};
+  return grid;
+}
+
+std::shared_ptr<const Rig> rig_of(FrameSource& source, const FrameRange& span) {
+  std::vector<std::uint32_t> order(source.num_vertices());
+  std::iota(order.rbegin(), order.rend(), 0U);  // decoded vertices in another order
+  const std::size_t num_bones = source.rig()->bones.size();
+  std::vector<BoneMap> maps(num_bones * span.count);
+  for (std::uint32_t f = 0; f < span.count; ++f) {
+    source.read_bones(span.first + f, std::span(maps).subspan(f * num_bones, num_bones));
+  }
+  return rig_of_span(*source.rig(), maps, fine_grid(), order);
+}
+
+void expect_positions(FrameSource& source, const Rig& rig, const FrameRange& span) {
+  std::vector<float> xyz(3 * std::size_t{source.num_vertices()});
+  for (std::uint32_t f = 0; f < span.count; ++f) {
+    ASSERT_FALSE(source.read_frame(span.first + f, xyz));
+    for (std::uint32_t v = 0; v < source.num_vertices(); ++v) {
+      const Point p = skinned_position(rig, f, source.num_vertices() - 1 - v);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double want =
+            static_cast<double>(xyz[3 * v + c]) * 4096.0 - fine_grid().origin[c];
+        ASSERT_NEAR(p[c], want, 0.3) << "frame " << f << ", vertex " << v;
+      }
+    }
+  }
+}
+
+TEST(InputRig, MovesTheVerticesOfASpan) {
+  Skeleton source(chain({2, 1.5F, 1, 0.5F}), {0.3, -0.2, 0.4, 0.1});
+  const FrameRange span{3, 6};
+  const auto rig = rig_of(source, span);
+  ASSERT_TRUE(rig);
+  ASSERT_EQ(rig->bones.size(), 4U);
+  for (const RigBone& bone : rig->bones) EXPECT_EQ(bone.poses.size(), span.count);
+  for (const auto& weights : rig->weights) {
+    double sum = 0.0;
+    for (const RigWeight& w : weights) sum += w.weight;
+    EXPECT_NEAR(sum, 1.0, 1e-12);
+  }
+  expect_positions(source, *rig, span);
+}
+
+TEST(InputRig, MergesBonesThatStandStillRelativeToTheirParents) {
+  Skeleton source(chain({2, 1, 2, 1}), {0.3, 0.0, 0.0, 0.2});
+  const FrameRange span{0, kFrames};
+  const auto rig = rig_of(source, span);
+  ASSERT_TRUE(rig);
+  ASSERT_EQ(rig->bones.size(), 2U);
+  EXPECT_EQ(rig->bones[1].parent, 0);
+  expect_positions(source, *rig, span);
+}
+
+TEST(InputRig, DropsBonesThatJoinNothing) {
+  Skeleton source(chain({2, 0, 2, 0}), {0.3, 0.1, 0.2, 0.2});
+  const FrameRange span{0, kFrames};
+  const auto rig = rig_of(source, span);
+  ASSERT_TRUE(rig);
+  ASSERT_EQ(rig->bones.size(), 2U);
+  expect_positions(source, *rig, span);
+}
+
+TEST(InputRig, KeepsBonesThatJoinOthers) {
+  SourceRig forked = chain({2, 0, 2, 2});
+  forked.bones[3].parent = 1;  // as that of bone 2
+  Skeleton source(std::move(forked), {0.3, 0.1, 0.2, 0.4});
+  const FrameRange span{0, kFrames};
+  const auto rig = rig_of(source, span);
+  ASSERT_TRUE(rig);
+  ASSERT_EQ(rig->bones.size(), 4U);
+  EXPECT_EQ(rig->bones[3].parent, 1);
+  expect_positions(source, *rig, span);
+}
+
+TEST(InputRig, IsAbsentWhereAllMovesAsOne) {
+  Skeleton source(chain({2, 1, 2}), {0.3, 0.0, 0.0});
+  EXPECT_FALSE(rig_of(source, {0, kFrames}));
+}
+
+}  // namespace
+}  // namespace rlpc
