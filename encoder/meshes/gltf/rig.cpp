@@ -12,6 +12,8 @@
 namespace rlpc {
 namespace {
 
+constexpr std::uint32_t kStill = 0xFFFFFFFF;  // instead of a node: stays in place
+
 // Returns the inverse; none if the map is flat, or nearly so.
 std::optional<Affine> inverse(const Affine& map) {
   const auto& m = map.row;
@@ -65,6 +67,12 @@ struct Box {
     }
     is_empty = false;
   }
+  // Returns one of eight corners.
+  GltfVec3 corner(unsigned number) const {
+    GltfVec3 p{};
+    for (std::size_t c = 0; c < 3; ++c) p[c] = (number >> c & 1U) != 0 ? max[c] : min[c];
+    return p;
+  }
 };
 
 // Whether two maps agree on all corners of a box, for all that can be seen.
@@ -73,11 +81,8 @@ bool agree(const Affine& a, const Affine& b, const Box& box) {
   double apart = 0.0;
   Box image;
   for (unsigned corner = 0; corner < 8; ++corner) {
-    GltfVec3 p{};
-    for (std::size_t c = 0; c < 3; ++c)
-      p[c] = (corner >> c & 1U) != 0 ? box.max[c] : box.min[c];
-    const GltfVec3 x = a(p);
-    const GltfVec3 y = b(p);
+    const GltfVec3 x = a(box.corner(corner));
+    const GltfVec3 y = b(box.corner(corner));
     image.add(x);
     for (std::size_t c = 0; c < 3; ++c) apart = std::max(apart, std::abs(x[c] - y[c]));
   }
@@ -186,10 +191,7 @@ class RigMaker {
     }
     Box rest;
     for (unsigned corner = 0; corner < 8; ++corner) {
-      GltfVec3 p{};
-      for (std::size_t c = 0; c < 3; ++c)
-        p[c] = (corner >> c & 1U) != 0 ? skin.box.max[c] : skin.box.min[c];
-      rest.add(skin.to_rest(p));
+      rest.add(skin.to_rest(skin.box.corner(corner)));
     }
     for (std::size_t j = 0; j < skin.mass.size(); ++j) {
       if (skin.mass[j] == 0.0) continue;
@@ -356,10 +358,6 @@ class RigMaker {
     }
   }
 
- public:
-  static constexpr std::uint32_t kStill = 0xFFFFFFFF;  // no node: stays in place
-
- private:
   const GltfModel& model_;
   std::span<const GltfPose* const> poses_;
   std::vector<Skin> skins_;
@@ -377,8 +375,8 @@ GltfRig gltf_rig(const GltfModel& model, std::span<const GltfPose* const> poses)
 void map_bones(const GltfRig& rig, const GltfPose& pose, std::span<BoneMap> maps) {
   for (std::size_t b = 0; b < rig.bones.size(); ++b) {
     const GltfRig::Bone& bone = rig.bones[b];
-    maps[b] = bone.node == RigMaker::kStill ? Affine{}.row
-                                            : (pose.to_scene[bone.node] * bone.from_rest).row;
+    maps[b] =
+        bone.node == kStill ? Affine{}.row : (pose.to_scene[bone.node] * bone.from_rest).row;
   }
 }
 

@@ -25,6 +25,23 @@ Motion motion_of(const BoneMap& map) {
   return motion;
 }
 
+// Whether no number is so large that positions are lost in rounding errors, or not finite:
+// files may place bones that move nothing anywhere.
+bool are_moderate(const SourceRig& source, std::span<const BoneMap> maps) {
+  constexpr double kLargest = 1e30;  // fixed: a guard; squares and sums stay finite
+  const auto is_moderate = [](double x) { return std::abs(x) <= kLargest; };
+  return std::all_of(source.rest.begin(), source.rest.end(), is_moderate) &&
+         std::all_of(source.bones.begin(), source.bones.end(),
+                     [&](const SourceRig::Bone& bone) {
+                       return std::all_of(bone.pivot.begin(), bone.pivot.end(), is_moderate);
+                     }) &&
+         std::all_of(maps.begin(), maps.end(), [&](const BoneMap& map) {
+           return std::all_of(map.begin(), map.end(), [&](const auto& row) {
+             return std::all_of(row.begin(), row.end(), is_moderate);
+           });
+         });
+}
+
 Vec3d point_of(const double* xyz) { return {xyz[0], xyz[1], xyz[2]}; }
 
 // Makes the rig of a span from that of a source, which it keeps a reference to.
@@ -193,6 +210,7 @@ class RigMaker {
 std::shared_ptr<const Rig> rig_of_span(const SourceRig& source, std::span<const BoneMap> maps,
                                        const Grid& grid,
                                        std::span<const std::uint32_t> input_vertex) {
+  if (!are_moderate(source, maps)) return nullptr;
   auto rig = std::make_shared<Rig>(RigMaker(source, maps, grid).make(input_vertex));
   const std::size_t count = rig->bones.size();
   if (count < 2 || count > kLevels.back().max_clusters) return nullptr;

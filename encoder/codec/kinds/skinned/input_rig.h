@@ -15,7 +15,7 @@ namespace rlpc {
 // Returns the rig with the poses of the frames of a span, in grid units: rigid motions, the
 // nearest to the maps of the bones. Bones that do not move relative to their parent are merged
 // with it; those that no vertex follows are dropped, unless they join others. Null if fewer
-// than two bones are left, or too many.
+// than two bones are left, or too many, or if numbers are so large that they are of no use.
 //
 //   maps          [frame][bone]
 //   input_vertex  [decoded vertex], its index in the source

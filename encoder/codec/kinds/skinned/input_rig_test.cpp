@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <numeric>
+#include <random>
 #include <span>
 #include <utility>
 #include <vector>
@@ -181,6 +184,51 @@ TEST(InputRig, KeepsBonesThatJoinOthers) {
 TEST(InputRig, IsAbsentWhereAllMovesAsOne) {
   Skeleton source(chain({2, 1, 2}), {0.3, 0.0, 0.0});
   EXPECT_FALSE(rig_of(source, {0, kFrames}));
+}
+
+// Bones may vanish, mirror or lie anywhere: whatever the maps are, poses are rotations.
+TEST(InputRig, HasRotationsWhateverTheMapsAre) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> number(-2.0, 2.0);
+  const SourceRig rig = chain({2, 1, 2, 1});
+  const std::vector<std::uint32_t> order{0, 1, 2, 3, 4, 5, 6, 7};
+  for (int round = 0; round < 2000; ++round) {
+    std::vector<BoneMap> maps(5 * rig.bones.size());
+    for (BoneMap& map : maps) {
+      const double scale = std::array{0.0, 1e-12, 1.0, -1.0, 1e12}[random() % 5];
+      for (auto& row : map) {
+        for (double& x : row) x = scale * number(random);
+      }
+      if (random() % 4 == 0) map[1] = map[0];  // flat
+    }
+    const auto made = rig_of_span(rig, maps, fine_grid(), order);
+    if (!made) continue;
+    for (const RigBone& bone : made->bones) {
+      for (const RigPose& pose : bone.poses) {
+        double norm = 0.0;
+        for (const double q : pose.rotation) norm += q * q;
+        ASSERT_NEAR(norm, 1.0, 1e-9);
+        for (const double x : pose.origin) ASSERT_TRUE(std::isfinite(x));
+      }
+    }
+  }
+}
+
+TEST(InputRig, IsAbsentWhereNumbersAreOfNoUse) {
+  const std::vector<std::uint32_t> order{0, 1, 2, 3};
+  for (const double x : {1e31, std::numeric_limits<double>::infinity(),
+                         std::numeric_limits<double>::quiet_NaN()}) {
+    std::vector<BoneMap> maps(4);
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      maps[i] = {{{1, 0, 0, static_cast<double>(i * i)}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    }
+    EXPECT_TRUE(rig_of_span(chain({2, 1}), maps, fine_grid(), order));
+    SourceRig far = chain({2, 1});
+    far.rest[4] = x;
+    EXPECT_FALSE(rig_of_span(far, maps, fine_grid(), order));
+    maps[2][1][3] = x;
+    EXPECT_FALSE(rig_of_span(chain({2, 1}), maps, fine_grid(), order));
+  }
 }
 
 }  // namespace
