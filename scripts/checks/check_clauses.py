@@ -16,6 +16,7 @@ Elements     every syntax element of the `rlpc` blocks (name = u(1), name = ue()
 """
 
 import collections
+import functools
 import dataclasses
 import fnmatch
 import itertools
@@ -125,8 +126,13 @@ class Spec:
         return bool(call and re.search(rf"\b{call.group(1)}\s*\(", clause.text))
 
 
+@functools.lru_cache(maxsize=None)
 def comment_lines(text):
     """(line number, the comment from there on) for every line that starts a comment text."""
+    return tuple(_comment_lines(text))
+
+
+def _comment_lines(text):
     bare = re.sub(r"//+|/\*+|\*/|^[ \t]*\*", lambda m: " " * len(m.group()),
                   cpp_source.comments_only(text), flags=re.MULTILINE)
     lines = bare.splitlines()
@@ -160,24 +166,34 @@ def check_start(spec, relative, text):
                        f'not "{rest.splitlines()[0].strip()}"')
 
 
-def check_references(spec, relative, text):
-    """Clauses, annexes and tables named within comments; rules named anywhere."""
+@functools.lru_cache(maxsize=None)
+def citations(text):
+    """(position, kind, name) of clauses, annexes and tables named within comments, and of rules
+    named anywhere."""
     comments = re.sub(r"\n([ \t]*)//", r"\n\1  ", cpp_source.comments_only(text))
     cited = []
     for match in _CITED_CLAUSE.finditer(comments):
-        cited += [(match.start(), f"clause {number}", number in spec.clauses)
+        cited += [(match.start(), "clause", number)
                   for number in re.findall(_NUMBER, match.group(1))]
     for match in _CITED_ANNEX.finditer(comments):
-        cited.append((match.start(), f"Annex {match.group(1)}", match.group(1) in spec.clauses))
+        cited.append((match.start(), "Annex", match.group(1)))
     for match in _CITED_TABLE.finditer(comments):
-        cited += [(match.start(), f"Table {table}", table in spec.tables)
-                  for table in match.groups() if table]
-    if not cpp_source.is_test(relative):  # tests may make up rules
-        for match in _RULE.finditer(text):
-            cited.append((match.start(), f"rule {match.group()}", match.group() in spec.rules))
-    for position, what, exists in cited:
-        if not exists:
-            yield f"{relative}:{cpp_source.line_of(text, position)}: there is no {what}"
+        cited += [(match.start(), "Table", table) for table in match.groups() if table]
+    for match in _RULE.finditer(text):
+        cited.append((match.start(), "rule", match.group()))
+    return tuple(cited)
+
+
+def check_references(spec, relative, text):
+    """Clauses, annexes and tables named within comments; rules named anywhere."""
+    known = {"clause": spec.clauses, "Annex": spec.clauses, "Table": spec.tables,
+             "rule": spec.rules}
+    for position, kind, name in citations(text):
+        if kind == "rule" and cpp_source.is_test(relative):
+            continue  # tests may make up rules
+        if name not in known[kind]:
+            yield (f"{relative}:{cpp_source.line_of(text, position)}: there is no "
+                   f"{kind} {name}")
 
 
 def check_elements(spec, parsers):

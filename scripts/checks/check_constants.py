@@ -8,6 +8,7 @@ different names, and encoder/codec/kinds/skinned/search/README.md has a row for 
 other, with its value and reason.
 """
 
+import functools
 import re
 import sys
 
@@ -31,8 +32,13 @@ _FRACTION = re.compile(
     r"[fF]?(?![\w.])")
 
 
+@functools.lru_cache(maxsize=None)
 def untagged(path, text):
     """Complaints about constants that say nothing."""
+    return tuple(_untagged(path, text))
+
+
+def _untagged(path, text):
     code = cpp_source.code_only(text)
     spans = []
     tagged = {c.span[0] + len(c.indent): c for c in tuned.declarations(path, text) if c.tag}

@@ -12,6 +12,7 @@ time says `fixed:` instead: limits of the format, memory, tolerances of rounding
 """
 
 import dataclasses
+import functools
 import re
 
 # Sources of the search: those of each kind of GOF (encoder/codec/kinds) among them. Constants
@@ -72,15 +73,19 @@ def _comment_above(text, start):
     return ""
 
 
+@functools.lru_cache(maxsize=None)
 def declarations(path, text):
     """All constants that are declared on one line."""
-    for match in _DECLARATION.finditer(text):
-        tag = _TAG.match(match["comment"] or _comment_above(text, match.start()))
-        yield Constant(path, match["name"], match["type"],
-                       (match["value"] or match["braces"]).strip(),
-                       tag["tag"] if tag else "", (tag["off"] or "") if tag else "",
-                       tag["reason"] if tag else "", match.span(), match["indent"],
-                       match["storage"])
+    return tuple(_constant(path, text, match) for match in _DECLARATION.finditer(text))
+
+
+def _constant(path, text, match):
+    tag = _TAG.match(match["comment"] or _comment_above(text, match.start()))
+    return Constant(path, match["name"], match["type"],
+                    (match["value"] or match["braces"]).strip(),
+                    tag["tag"] if tag else "", (tag["off"] or "") if tag else "",
+                    tag["reason"] if tag else "", match.span(), match["indent"],
+                    match["storage"])
 
 
 def sources(root):
