@@ -11,6 +11,9 @@
 #include <vector>
 
 #include "encoder/meshes/axes.h"
+#include "encoder/meshes/gltf/model.h"
+#include "encoder/meshes/gltf/pose.h"
+#include "encoder/meshes/gltf/rig.h"
 #include "encoder/meshes/source_rig.h"
 #include "encoder/meshes/weld.h"
 #include "encoder/testing/gltf_files.h"
@@ -181,7 +184,7 @@ class RandomScene {
   void add_mesh(std::size_t node, std::size_t num_skins) {
     Json& n = builder_.json["nodes"][node];
     if (n.contains("mesh")) return;
-    constexpr std::size_t kVertices = 6;
+    constexpr std::size_t kVertices = 24;
     Json attributes{{"POSITION", builder_.add("VEC3", numbers(3 * kVertices))}};
     if (num_skins > 0 && below(4) != 0) {
       const std::size_t skin = below(num_skins);
@@ -242,8 +245,36 @@ TEST_F(GltfRigTest, IsAbsentWhereOneBoneMovesAll) {
   EXPECT_FALSE(open(moving_triangle())->rig());
 }
 
+// Triangles that nodes move, one each.
+TEST_F(GltfRigTest, IsAbsentWhereBonesAreNearlyAsManyAsVertices) {
+  GltfBuilder builder;
+  const std::size_t mesh =
+      builder.add_mesh({{"attributes", {{"POSITION", builder.add("VEC3", kCorners)}}}});
+  for (int i = 0; i < 40; ++i) builder.add_root({{"mesh", mesh}});
+  EXPECT_FALSE(open(builder)->rig());
+}
+
+TEST_F(GltfRigTest, IsAbsentWhereMemoryIsShort) {
+  const std::string path = put("a.glb", RandomScene(3).builder().glb());
+  const auto model = read_gltf_model({path, "", {}, {}, false}, {});
+  ASSERT_TRUE(model) << model.error().message;
+  const GltfPose pose = pose_of(model->nodes, model->scene, nullptr, 0.0);
+  const std::vector<const GltfPose*> poses{&pose};
+  const auto whole = gltf_rig(*model, poses, std::uint64_t{1} << 30).rig;
+  ASSERT_TRUE(whole);
+  EXPECT_TRUE(gltf_rig(*model, poses, whole->memory_bytes()).rig);
+  EXPECT_FALSE(gltf_rig(*model, poses, whole->memory_bytes() / 2).rig);
+}
+
+TEST_F(GltfRigTest, IsAbsentIfItIsNotWanted) {
+  InputOptions options{put("a.glb", RandomScene(3).builder().glb()), "", {}, {}, false};
+  options.rig = false;
+  EXPECT_FALSE((*open_gltf(options))->rig());
+}
+
 // Two skins of the same joint, whose meshes were bound in different places.
 TEST_F(GltfRigTest, PlacesMeshesOfDifferentBindMatricesInOneRestShape) {
+  constexpr int kVertices = 12;
   GltfBuilder builder;
   const std::size_t joint = builder.add_root({{"translation", {1, 2, 3}}});
   const std::size_t still = builder.add_root({{"translation", {0, 0, 0}}});
@@ -254,13 +285,18 @@ TEST_F(GltfRigTest, PlacesMeshesOfDifferentBindMatricesInOneRestShape) {
     const std::size_t skin = builder.push(
         "skins",
         {{"joints", {joint, still}}, {"inverseBindMatrices", builder.add("MAT4", both)}});
-    const std::vector<float> corners{-x, 0, 0, 1 - x, 0, 0, -x, 1, 0};
-    const Json attributes{
-        {"POSITION", builder.add("VEC3", corners)},
-        {"JOINTS_0",
-         builder.add("VEC4", std::vector<std::uint8_t>{0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0})},
-        {"WEIGHTS_0",
-         builder.add("VEC4", std::vector<float>{1, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0})}};
+    std::vector<float> corners;
+    std::vector<std::uint8_t> joints;
+    std::vector<float> weights;
+    for (int i = 0; i < kVertices; ++i) {
+      corners.insert(corners.end(),
+                     {0.5F * static_cast<float>(i) - x, static_cast<float>(i % 3), 0});
+      joints.insert(joints.end(), {0, 1, 0, 0});
+      weights.insert(weights.end(), {1.0F, static_cast<float>(i % 2), 0, 0});
+    }
+    const Json attributes{{"POSITION", builder.add("VEC3", corners)},
+                          {"JOINTS_0", builder.add("VEC4", joints)},
+                          {"WEIGHTS_0", builder.add("VEC4", weights)}};
     builder.add_root(
         {{"skin", skin}, {"mesh", builder.add_mesh({{"attributes", attributes}})}});
   }
@@ -268,7 +304,9 @@ TEST_F(GltfRigTest, PlacesMeshesOfDifferentBindMatricesInOneRestShape) {
   ASSERT_TRUE(source->rig());
   const SourceRig& rig = *source->rig();
   EXPECT_EQ(rig.bones.size(), 3U);  // the joints, and the one that joins them
-  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(rig.rest[i], rig.rest[9 + i], 1e-9) << i;
+  for (std::size_t i = 0; i < 3 * kVertices; ++i) {
+    EXPECT_NEAR(rig.rest[i], rig.rest[3 * kVertices + i], 1e-9) << i;
+  }
   expect_agreement(*source);
 }
 

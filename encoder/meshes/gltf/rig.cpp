@@ -91,6 +91,19 @@ bool agree(const Affine& a, const Affine& b, const Box& box) {
   return apart <= kSeen * size;
 }
 
+// Returns the memory of the rest shape and its influences.
+std::uint64_t memory_of_vertices(const GltfModel& model) {
+  std::uint64_t sum = 0;
+  for (const GltfModel::Instance& instance : model.instances) {
+    const GltfGeometry& geometry = model.geometries[instance.geometry];
+    const std::uint64_t num_influences =
+        instance.skin ? geometry.influences.size() : geometry.num_vertices();
+    sum += (3 * sizeof(double) + sizeof(std::size_t)) * geometry.num_vertices() +
+           sizeof(SourceRig::Influence) * num_influences;
+  }
+  return sum;
+}
+
 class RigMaker {
  public:
   RigMaker(const GltfModel& model, std::span<const GltfPose* const> poses)
@@ -368,8 +381,13 @@ class RigMaker {
 
 }  // namespace
 
-GltfRig gltf_rig(const GltfModel& model, std::span<const GltfPose* const> poses) {
-  return RigMaker(model, poses).make();
+GltfRig gltf_rig(const GltfModel& model, std::span<const GltfPose* const> poses,
+                 std::uint64_t max_memory_bytes) {
+  // Poses of so many bones take less memory than the vertices that they move.
+  constexpr std::uint64_t kVerticesOfBone = 4;  // fixed: memory
+  if (memory_of_vertices(model) > max_memory_bytes) return {};
+  GltfRig rig = RigMaker(model, poses).make();
+  return kVerticesOfBone * rig.bones.size() <= model.num_vertices ? rig : GltfRig{};
 }
 
 void map_bones(const GltfRig& rig, const GltfPose& pose, std::span<BoneMap> maps) {

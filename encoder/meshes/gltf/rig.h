@@ -25,8 +25,10 @@ struct GltfRig {
 // Returns the rig of the model. All vertices have one rest shape, of about their size in the
 // scene: meshes of other skins, and those that nodes move, are placed so that bones in common
 // move them alike. poses: at least one; the first is that of the first frame, the others show
-// nodes that are small in it.
-GltfRig gltf_rig(const GltfModel& model, std::span<const GltfPose* const> poses);
+// nodes that are small in it. No rig: one bone moves everything, there are too many bones to be
+// of use, or the rig would take more than max_memory_bytes.
+GltfRig gltf_rig(const GltfModel& model, std::span<const GltfPose* const> poses,
+                 std::uint64_t max_memory_bytes);
 
 // Computes the maps of the bones in a pose.
 void map_bones(const GltfRig& rig, const GltfPose& pose, std::span<BoneMap> maps);

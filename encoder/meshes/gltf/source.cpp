@@ -197,14 +197,16 @@ InputResult<std::unique_ptr<FrameSource>> open_gltf(const InputOptions& options,
   shape.attributes = gltf_attributes(*model, shape.triangles, first_pose, sampled);
   std::vector<const GltfPose*> poses{&first_pose};
   for (const SampledPoses::Later& later : sampled.later) poses.push_back(&later.pose);
-  GltfRig rig = options.rig ? gltf_rig(*model, poses) : GltfRig{};
-  shape.rig = rig.rig;
   shape.files = model->files;
   shape.clips = clips_of(*model, *first_frame);
   shape.memory_bytes = model->memory_bytes;
   // Decoded positions of these frames are kept too.
   for (const PosedNormals& later : shape.attributes.later_normals)
     shape.memory_bytes += 4 * sizeof(float) * later.normals.size();
+  const std::uint64_t left_bytes =
+      options.max_memory_bytes - std::min(options.max_memory_bytes, shape.memory_bytes);
+  GltfRig rig = options.rig ? gltf_rig(*model, poses, left_bytes) : GltfRig{};
+  shape.rig = rig.rig;
   if (shape.rig) shape.memory_bytes += shape.rig->memory_bytes();
   if (!options.weld) drop_degenerate(shape);
   std::unique_ptr<FrameSource> source = std::make_unique<GltfSource>(
