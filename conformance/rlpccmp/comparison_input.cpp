@@ -101,6 +101,7 @@ InputResult<ComparisonInput> open_comparison_input(const InputOptions& given) {
                       given.points};
   }
   InputOptions options = given;
+  options.rig = false;
   const InputFormat* const format = format_of_extension(given.path);
   const bool is_cache = format != nullptr && format->holds == InputFormat::Holds::kPoints;
   if (is_cache && given.points.empty()) {

@@ -254,6 +254,44 @@ TEST_F(GltfRigTest, IsAbsentWhereBonesAreNearlyAsManyAsVertices) {
   EXPECT_FALSE(open(builder)->rig());
 }
 
+// Skins that bind one joint in many places: each would need a bone, and a search for it.
+TEST_F(GltfRigTest, IsAbsentWhereManySkinsBindAJointDifferently) {
+  const auto bound = [](int num_skins) {
+    GltfBuilder builder;
+    const std::size_t joint = builder.add_root({{"translation", {1, 2, 3}}});
+    const std::size_t other = builder.add_root({{"translation", {0, 0, 0}}});
+    for (int i = 0; i < num_skins; ++i) {
+      std::vector<float> both;
+      for (const float x : {0.0F, static_cast<float>(i)}) {
+        both.insert(both.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, 0, 0, 1});
+      }
+      const std::size_t skin = builder.push(
+          "skins",
+          {{"joints", {joint, other}}, {"inverseBindMatrices", builder.add("MAT4", both)}});
+      std::vector<float> corners;
+      std::vector<std::uint8_t> joints;
+      std::vector<float> weights;
+      for (int v = 0; v < 6; ++v) {
+        const float x = static_cast<float>(v);
+        corners.insert(corners.end(), {x, x * x, 0});
+        joints.insert(joints.end(), {0, 1, 0, 0});
+        weights.insert(weights.end(), {3, 1, 0, 0});
+      }
+      const Json attributes{{"POSITION", builder.add("VEC3", corners)},
+                            {"JOINTS_0", builder.add("VEC4", joints)},
+                            {"WEIGHTS_0", builder.add("VEC4", weights)}};
+      builder.add_root(
+          {{"skin", skin}, {"mesh", builder.add_mesh({{"attributes", attributes}})}});
+    }
+    return builder;
+  };
+  const auto few = open(bound(16));
+  ASSERT_TRUE(few->rig());
+  EXPECT_EQ(few->rig()->bones.size(), 18U);  // one of the first joint, 16, and the one above
+  expect_agreement(*few);
+  EXPECT_FALSE(open(bound(17))->rig());
+}
+
 TEST_F(GltfRigTest, IsAbsentWhereMemoryIsShort) {
   const std::string path = put("a.glb", RandomScene(3).builder().glb());
   const auto model = read_gltf_model({path, "", {}, {}, false}, {});

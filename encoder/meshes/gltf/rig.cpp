@@ -107,11 +107,14 @@ std::uint64_t memory_of_vertices(const GltfModel& model) {
 class RigMaker {
  public:
   RigMaker(const GltfModel& model, std::span<const GltfPose* const> poses)
-      : model_(model), poses_(poses), bones_of_node_(model.nodes.size()) {}
+      : model_(model),
+        poses_(poses),
+        bones_of_node_(model.nodes.size()),
+        joint_of_node_(model.nodes.size()) {}
 
   GltfRig make() {
     find_skins();
-    for (std::size_t s = 0; s < skins_.size(); ++s) add_skin(s);
+    for (std::size_t s = 0; is_usable_ && s < skins_.size(); ++s) add_skin(s);
     add_other_nodes();
     if (!is_usable_ || bones_.size() < 2) return {};
     return sorted();
@@ -121,6 +124,10 @@ class RigMaker {
   struct Bone {
     std::uint32_t node = 0;
     Affine from_rest;
+  };
+  struct Joint {
+    std::size_t skin = 0;
+    std::size_t joint = 0;
   };
   // A skin of the scene: what its joints carry, and how its meshes become the rest shape.
   struct Skin {
@@ -167,28 +174,32 @@ class RigMaker {
         skin.box.add({shape[i], shape[i + 1], shape[i + 2]});
       }
     }
+    for (std::size_t s = 0; s < skins_.size(); ++s) {
+      if (skins_[s].box.is_empty) continue;
+      const std::vector<std::uint32_t>& joints = model_.skins[s].joints;
+      for (std::size_t j = 0; j < joints.size(); ++j) {
+        if (!joint_of_node_[joints[j]]) joint_of_node_[joints[j]] = Joint{s, j};
+      }
+    }
   }
 
   // Adds the bones of a skin, placed so that as many as possible are those of earlier skins.
   void add_skin(std::size_t s) {
     Skin& skin = skins_[s];
     const GltfModel::Skin& from = model_.skins[s];
-    std::optional<std::size_t> heaviest;  // joint, with a bone if there is one
-    bool has_bone = false;
-    for (std::size_t j = 0; j < skin.mass.size(); ++j) {
-      if (skin.mass[j] == 0.0) continue;
-      const bool has = !bones_of_node_[from.joints[j]].empty();
-      if (!heaviest || has > has_bone ||
-          (has == has_bone && skin.mass[j] > skin.mass[*heaviest])) {
-        heaviest = j;
-        has_bone = has;
-      }
+    // The joint that carries most, of those with a bone if there are any.
+    const auto rank = [&](std::size_t j) {
+      return std::pair(skin.mass[j] > 0.0 && has_bone(from.joints[j]), skin.mass[j]);
+    };
+    std::size_t heaviest = 0;
+    for (std::size_t j = 1; j < skin.mass.size(); ++j) {
+      if (rank(j) > rank(heaviest)) heaviest = j;
     }
-    if (!heaviest) return;
-    const std::uint32_t node = from.joints[*heaviest];
-    const Affine& bind = from.inverse_bind[*heaviest];
+    if (skin.mass.empty() || skin.mass[heaviest] == 0.0) return;
+    const std::uint32_t node = from.joints[heaviest];
+    const Affine& bind = from.inverse_bind[heaviest];
     std::optional<Affine> from_rest;
-    if (has_bone) {
+    if (has_bone(node)) {
       const auto back = inverse(bones_[bones_of_node_[node].front()].from_rest);
       if (back) skin.to_rest = *back * bind;
       if (back) from_rest = inverse(skin.to_rest);
@@ -215,8 +226,13 @@ class RigMaker {
   // Returns the bone of a node that moves the rest shape by `from_rest`: one that does so for
   // all vertices in a box, or a new one.
   std::uint32_t bone_of(std::uint32_t node, const Affine& from_rest, const Box& box) {
+    constexpr std::size_t kMaxBonesOfNode = 16;  // fixed: time; then the rig is of no use
     for (const std::uint32_t b : bones_of_node_[node]) {
       if (agree(bones_[b].from_rest, from_rest, box)) return b;
+    }
+    if (bones_of_node_[node].size() == kMaxBonesOfNode) {
+      is_usable_ = false;
+      return bones_of_node_[node].front();
     }
     return new_bone(node, from_rest);
   }
@@ -274,16 +290,11 @@ class RigMaker {
 
   // Returns how a joint moves the rest shape, by the first skin in use that it belongs to.
   std::optional<Affine> bind_of(std::uint32_t node) const {
-    for (std::size_t s = 0; s < skins_.size(); ++s) {
-      const auto& joints = model_.skins[s].joints;
-      const auto found = std::find(joints.begin(), joints.end(), node);
-      if (skins_[s].box.is_empty || found == joints.end()) continue;
-      const auto from_rest = inverse(skins_[s].to_rest);
-      if (!from_rest) continue;
-      const auto j = static_cast<std::size_t>(found - joints.begin());
-      return model_.skins[s].inverse_bind[j] * *from_rest;
-    }
-    return std::nullopt;
+    const auto& place = joint_of_node_[node];
+    if (!place) return std::nullopt;
+    const auto from_rest = inverse(skins_[place->skin].to_rest);
+    if (!from_rest) return std::nullopt;
+    return model_.skins[place->skin].inverse_bind[place->joint] * *from_rest;
   }
 
   Affine map_of(std::uint32_t bone, const GltfPose& pose) const {
@@ -376,6 +387,7 @@ class RigMaker {
   std::vector<Skin> skins_;
   std::vector<Bone> bones_;
   std::vector<std::vector<std::uint32_t>> bones_of_node_;
+  std::vector<std::optional<Joint>> joint_of_node_;  // in the first skin in use that has it
   bool is_usable_ = true;
 };
 

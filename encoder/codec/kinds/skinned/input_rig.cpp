@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "common/codec/kinds/skinned/skinned_gof.h"
@@ -130,19 +131,19 @@ class RigMaker {
     std::vector<bool> has_vertices(num_bones());
     for (const SourceRig::Influence& i : from_.influences)
       has_vertices[bone_of_[i.bone]] = true;
+    // Kept bones below each bone, with none kept between.
     std::vector<std::vector<std::size_t>> children(num_bones());
     for (std::size_t b = num_bones(); b-- > 0;) {
       if (bone_of_[b] != b) continue;
-      const std::size_t parent =
-          from_.bones[b].parent < 0 ? kNone
-                                    : bone_of_[static_cast<std::size_t>(from_.bones[b].parent)];
-      is_kept_[b] = has_vertices[b] || children[b].size() > 1;
-      if (is_kept_[b]) children[b].push_back(b);
-      for (const std::size_t child : children[b]) {
-        if (is_kept_[b] && child != b) continue;
-        parent_[child] = parent;
-        if (parent != kNone) children[parent].push_back(child);
+      std::vector<std::size_t> highest = std::move(children[b]);
+      is_kept_[b] = has_vertices[b] || highest.size() > 1;
+      if (is_kept_[b]) {
+        for (const std::size_t child : highest) parent_[child] = b;
+        highest = {b};
       }
+      if (from_.bones[b].parent < 0) continue;
+      auto& above = children[bone_of_[static_cast<std::size_t>(from_.bones[b].parent)]];
+      above.insert(above.end(), highest.begin(), highest.end());
     }
   }
 
