@@ -29,10 +29,9 @@ inline std::int32_t rounded_residual(double wanted, double round_up) {
 }
 
 // Returns the one of the two integers next to `wanted` (in steps) with the lower Lagrangian
-// cost under the models. The larger magnitude is considered only if it is nearer. lambda: what
-// a bit is worth, in squared steps.
+// cost under the models. The larger magnitude is considered only if it is nearer.
 inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expected,
-                                     double wanted, double lambda = kLambda) {
+                                     double wanted) {
   constexpr double kMax = static_cast<double>(kMaxResidual) - 1.0;  // fixed: format
   const double steps = std::min(std::abs(wanted), kMax);
   auto magnitude = static_cast<std::int32_t>(steps);
@@ -44,7 +43,7 @@ inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expec
   };
   if (fraction >= 0.5) {
     const double saved = fraction * fraction - (1.0 - fraction) * (1.0 - fraction);
-    if (lambda * (bits(magnitude + 1) - bits(magnitude)) < saved) ++magnitude;
+    if (kLambda * (bits(magnitude + 1) - bits(magnitude)) < saved) ++magnitude;
   }
   return wanted < 0.0 ? -magnitude : magnitude;
 }
@@ -53,10 +52,8 @@ inline std::int32_t cheaper_residual(ResidualModels& models, std::uint32_t expec
 // Copies can continue with different vertices of a layer, as in VertexContexts.
 class VertexResidualChoice {
  public:
-  // lambda: as in cheaper_residual().
-  VertexResidualChoice(const OrderedMesh& mesh, std::size_t num_factors,
-                       double lambda = kLambda)
-      : contexts_(mesh, num_factors), models_(1), lambda_(lambda) {}
+  VertexResidualChoice(const OrderedMesh& mesh, std::size_t num_factors)
+      : contexts_(mesh, num_factors), models_(1) {}
 
   // A residual, with the contexts that it was chosen in.
   struct Chosen {
@@ -70,7 +67,7 @@ class VertexResidualChoice {
   Chosen next(double wanted) {
     Chosen chosen{0, contexts_.expected(), static_cast<std::uint32_t>(contexts_.activity())};
     ResidualModels& models = models_.front()[chosen.activity];
-    chosen.residual = cheaper_residual(models, chosen.expected, wanted, lambda_);
+    chosen.residual = cheaper_residual(models, chosen.expected, wanted);
     adapt(chosen);
     contexts_.update(chosen.residual);
     return chosen;
@@ -91,7 +88,6 @@ class VertexResidualChoice {
 
   VertexContexts contexts_;
   std::vector<VertexModels> models_;  // a single one, too large for the stack
-  double lambda_;
 };
 
 }  // namespace rlpc

@@ -93,15 +93,6 @@ std::optional<AdaptiveWeights> start_weights(const OrderedMesh& mesh, const Shar
       std::array<std::span<const std::int32_t>, 3>{rest[0], rest[1], rest[2]});
 }
 
-// Returns what a bit is worth, in squared steps.
-double lambda_of(const SharedRig& rig) {
-  // tuned (off: 1): The worth of a bit of a spatial factor, relative to others, where weights
-  // adapt to each vertex, with a single bone: most factors are zero, and their errors spread.
-  constexpr double kLessWorth = 0.75;
-  const bool adapts = rig.bones.size() == 1 && rig.weights.num_adaptive_factors > 0;
-  return adapts ? kLessWorth * kLambda : kLambda;
-}
-
 // Vertices that are coded one after the other.
 struct Pass {
   std::optional<VertexResidualChoice> choice;
@@ -130,7 +121,7 @@ class SpatialCoder {
 
   SpatialValues code() {
     Pass all{{}, false, {}, std::vector<std::int32_t>(count_)};
-    if (rounding_ == Rounding::kCheapest) all.choice.emplace(mesh_, count_, lambda_of(rig_));
+    if (rounding_ == Rounding::kCheapest) all.choice.emplace(mesh_, count_);
     // Vertices of the base, or of a mesh without layers, are predicted from each other.
     code(mesh_.vertices_of_layers(0, 1), all);
     num_coded_ = mesh_.vertices_of_layers(0, 1).size();

@@ -74,8 +74,7 @@ class TemporalCoder {
 
   // Returns the exponent of the product of both steps, 2^(eighths / 8), which the stream codes.
   int eighths_of(std::size_t l, int min_eighths) const {
-    const double error =
-        temporal_error(analysis_.rig, settings_.num_adaptive_factors > 0, tracks_.num_frames());
+    const double error = temporal_error(analysis_.rig);
     const double wanted = step_ * std::sqrt(error / importance(l)) * step_;
     const double min = step_ * largest_magnitude(analysis_.pc.temporal[l]) / kMaxTemporal;
     return std::clamp(static_cast<int>(round_to_int(8.0 * det_log2(std::max(wanted, min)))),

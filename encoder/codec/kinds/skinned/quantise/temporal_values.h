@@ -2,7 +2,6 @@
 // and predicts their values (inverse of 8.14.2).
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -17,24 +16,9 @@ namespace rlpc {
 // bones. The residual of bone motion is confined to few vertices, so that its temporal values
 // may be coarser.
 inline constexpr double kTemporalErrorOfBones = 2.0;
-// tuned (off: 1e9): Where weights adapt to each vertex, with a single bone, errors of temporal
-// values grow with the number of spatial factors to each temporal value beyond this one.
-// Spatial factors are fitted to decoded temporal values, which absorbs much of their errors.
-inline constexpr double kSpatialToTemporal = 2.0;
-// tuned (off: 1): They grow at most by this factor.
-inline constexpr double kMaxTemporalRise = 2.4;
-
 // Returns the squared error of a temporal value relative to that of a spatial one.
-//
-//   adapts      weights adapt to each vertex
-//   num_frames  frames of the span
-inline double temporal_error(const SharedRig& rig, bool adapts, std::size_t num_frames) {
-  if (rig.bones.size() > 1) return kTemporalErrorOfBones;
-  if (!adapts) return kTemporalError;
-  const double spatial_to_temporal =
-      static_cast<double>(rig.influences.size()) / (3.0 * static_cast<double>(num_frames));
-  return kTemporalError *
-         std::clamp(spatial_to_temporal / kSpatialToTemporal, 1.0, kMaxTemporalRise);
+inline double temporal_error(const SharedRig& rig) {
+  return rig.bones.size() > 1 ? kTemporalErrorOfBones : kTemporalError;
 }
 
 struct TemporalValues {
