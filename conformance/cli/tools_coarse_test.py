@@ -9,7 +9,7 @@ import re
 import struct
 
 from tools_cut_test import CutTest
-from tools_testing import ROOT, main, read_rlpd, run
+from tools_testing import ROOT, main, read_rlpd, run, searched
 
 import specdec  # tools_cut_test knows the folder
 from specdec_testing import PROGRAM, coarse_mesh
@@ -25,7 +25,7 @@ def positions_of(frame):
 
 
 class Coarse(CutTest):
-    STREAMS = 8  # random ones of a profile
+    STREAMS = searched(3, 8)  # random ones of a profile
 
     def expected(self, path):
         """(number of layers, the coarse mesh of so many layers in output order) by the

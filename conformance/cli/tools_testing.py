@@ -3,6 +3,7 @@
 import argparse
 import array
 import json
+import os
 import pathlib
 import resource
 import shutil
@@ -15,6 +16,11 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INPUTS = ROOT / "streams" / "inputs"
 NAMES = ("elephant", "curtain", "robot_arm")
+
+
+def searched(few, many):
+    """How much a random search tries: `many` where `scripts/test --all` runs it."""
+    return many if os.environ.get("RLPC_LONG") else few
 
 
 class Tools:
