@@ -199,6 +199,11 @@ ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_co
                                   double min_energy) {
   ComponentsByRow result;
   const std::size_t width = rows.num_frames;
+  if (width == 0) return result;
+  if (width > kWideMatrix && rows.num_values > kSampled) {
+    if (auto found = components_in_subspace(rows, max_components, min_energy)) return *found;
+    // Rows are read again.
+  }
   if (width > rows.num_values) {
     TrajectoryMatrix matrix{rows.num_values, width,
                             std::vector<double>(rows.num_values * width)};
@@ -210,11 +215,6 @@ ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_co
     result.energy = std::move(pc.energy);
     result.temporal = std::move(pc.temporal);
     return result;
-  }
-  if (width == 0) return result;
-  if (width > kWideMatrix) {
-    if (auto found = components_in_subspace(rows, max_components, min_energy)) return *found;
-    // Rows are read again.
   }
   std::vector<double> gram(width * width);
   for_some_rows(rows, [&](std::span<const double> some) {

@@ -253,15 +253,18 @@ TEST(PrincipalComponents, AreDeterministic) {
   EXPECT_EQ(a.temporal, b.temporal);
 }
 
+class WideMatrix : public testing::TestWithParam<std::size_t> {};
+
 // Wide matrices of which few components are wanted are analysed through a sample of the
-// columns.
-TEST(ComponentsByRow, OfAWideMatrixHaveItsEnergy) {
-  constexpr std::size_t kValues = 1600;
+// columns, whether they have more rows or more columns.
+TEST_P(WideMatrix, HasComponentsWithItsEnergy) {
+  const std::size_t num_values = GetParam();
   constexpr std::size_t kColumns = 1560;
   constexpr std::size_t kRank = 6;
-  const TrajectoryMatrix m = random_matrix(11, kValues, kColumns, kRank);
+  const TrajectoryMatrix m = random_matrix(11, num_values, kColumns, kRank);
   int reads = 0;
-  const TrajectoryRows rows{kValues, kColumns, [&](std::size_t first, std::span<double> some) {
+  const TrajectoryRows rows{num_values, kColumns,
+                            [&](std::size_t first, std::span<double> some) {
                               if (first == 0) ++reads;
                               for (std::size_t i = 0; i < some.size(); ++i) {
                                 some[i] = m.a[first * kColumns + i];
@@ -270,14 +273,14 @@ TEST(ComponentsByRow, OfAWideMatrixHaveItsEnergy) {
   const ComponentsByRow found = components_by_row(rows, 100, 1e-3);
   EXPECT_EQ(reads, 3) << "not by a sample";
   ASSERT_EQ(found.temporal.size(), kRank);
-  ASSERT_EQ(found.spatial.size(), kValues * kRank);
+  ASSERT_EQ(found.spatial.size(), num_values * kRank);
   const PrincipalComponents exact = principal_components(m, 100, 1e-3);
   for (std::size_t l = 0; l < kRank; ++l) {
     EXPECT_NEAR(found.energy[l] / exact.energy[l], 1.0, 1e-6);
     EXPECT_NEAR(dot(found.temporal[l], found.temporal[l]), 1.0, 1e-9);
   }
   double largest = 0.0;
-  for (std::size_t i = 0; i < kValues; ++i) {
+  for (std::size_t i = 0; i < num_values; ++i) {
     for (std::size_t f = 0; f < kColumns; ++f) {
       double sum = 0.0;
       for (std::size_t l = 0; l < kRank; ++l) {
@@ -288,6 +291,8 @@ TEST(ComponentsByRow, OfAWideMatrixHaveItsEnergy) {
   }
   EXPECT_LT(largest, 1e-2);
 }
+
+INSTANTIATE_TEST_SUITE_P(ComponentsByRow, WideMatrix, testing::Values(600U, 1600U));
 
 }  // namespace
 }  // namespace rlpc
