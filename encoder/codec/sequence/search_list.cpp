@@ -26,8 +26,11 @@ std::vector<EncoderSettings> searches_of_profile(const EncoderSettings& settings
   return searches;
 }
 
-// Whether all tools are left to the encoder, so that those of another profile may be used.
-bool is_free(const EncoderSettings& settings) {
+// Whether those of contained profiles are searched: all tools are left to the encoder, and it
+// takes little time. On long sequences, kinds are compared by samples of the mesh.
+bool searches_contained(const EncoderSettings& settings, std::uint64_t num_positions) {
+  constexpr std::uint64_t kMaxPositions = std::uint64_t{1} << 18;  // fixed: a second or two
+  if (num_positions > kMaxPositions) return false;
   return settings.target.has_search() && !settings.gof_kind && settings.components == 0 &&
          settings.main == MainTools{} && settings.inter == InterTools{};
 }
@@ -49,7 +52,8 @@ std::vector<Search> list_searches(const EncoderSettings& settings, std::uint32_t
     }
   };
   add();
-  while (is_free(settings) && profile_settings.profile != Profile::kBaseline) {
+  const bool is_free = searches_contained(settings, std::uint64_t{num_vertices} * num_frames);
+  while (is_free && profile_settings.profile != Profile::kBaseline) {
     profile_settings.profile =
         profile_settings.profile == Profile::kHigh ? Profile::kMain : Profile::kBaseline;
     add();

@@ -32,6 +32,13 @@ TEST(ListSearches, HasThoseOfTheProfilesThatAreContained) {
             (Profiles{Profile::kHigh, Profile::kMain, Profile::kBaseline}));
 }
 
+TEST(ListSearches, LeavesOutThoseOfContainedProfilesWhereTheyTakeLong) {
+  EncoderSettings settings = settings_of(Profile::kHigh);
+  EXPECT_EQ(list_searches(settings, 1 << 10, 1 << 8).size(), 3U);
+  EXPECT_EQ(list_searches(settings, 1 << 10, (1 << 8) + 1).size(), 1U);
+  EXPECT_EQ(list_searches(settings, 1U << 31, 2).size(), 1U);  // not taken as 0
+}
+
 TEST(ListSearches, HasOneWhereToolsAreAskedFor) {
   for (const Profile profile : {Profile::kMain, Profile::kHigh}) {
     EncoderSettings settings = settings_of(profile);

@@ -38,20 +38,12 @@ std::uint32_t spans_together(const SequenceHeader& header, std::uint32_t longest
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(max, 1, num_threads));
 }
 
-// Time at which the search of a contained profile may end before it has reached the target.
-enum class GivingUp { kNever, kAfterEncoding, kAfterSample };
-
-// Searches that take a second or two first encode all GOFs: the sample, whose clusters are not
-// searched, can take several times the bytes that the search finds. Those that take some tenths
-// of a second are never given up: where streams have few bytes, sizes and errors jump from one
-// step to the next.
-GivingUp giving_up(const SequenceHeader& header) {
-  // Numbers of vertices of all frames together.
-  constexpr std::uint64_t kSmall = std::uint64_t{1} << 15;   // fixed: time
-  constexpr std::uint64_t kMedium = std::uint64_t{1} << 18;  // fixed: time
-  const std::uint64_t count = std::uint64_t{header.num_vertices} * header.num_frames;
-  if (count <= kSmall) return GivingUp::kNever;
-  return count <= kMedium ? GivingUp::kAfterEncoding : GivingUp::kAfterSample;
+// Searches of contained profiles that take some tenths of a second are never given up: where
+// streams have few bytes, sizes and errors jump from one step to the next.
+bool may_give_up(const SequenceHeader& header) {
+  constexpr std::uint64_t kSmall = std::uint64_t{1}
+                                   << 15;  // fixed: time; vertices of all frames
+  return std::uint64_t{header.num_vertices} * header.num_frames > kSmall;
 }
 
 // Returns the decoded frames that attributes refer to.
@@ -210,35 +202,6 @@ TargetTask SequenceEncoder::task(const EncoderSettings& settings) const {
           .rms_spread = extent_.rms_spread,
           .fixed_bits = fixed_bits(),
           .progress = [this](std::uint32_t trial, double done) { show_progress(trial, done); }};
-}
-
-// Whether the search is hopeless, judged by a first encoding of a sample of the spans with the
-// fast preset.
-InputResult<bool> SequenceEncoder::is_hopeless(const Rival& rival) {
-  // tuned (off: 1): A search is not begun where a sample takes more bytes than the best result,
-  // at equal error, by this factor.
-  constexpr double kFarLow = 1.6;
-  // tuned (off: 1): The same for high ranks: the number of clusters then matters most, and the
-  // fast preset, with which the sample is encoded, does not search it.
-  constexpr double kFarHigh = 3.0;
-  constexpr std::size_t kPart = 4;  // fixed: a quarter of the spans, but at least one
-  const SequenceHeader& header = coding_->header();
-  // The High profile has all tools of the Main profile, and shares what these repeat. If
-  // neither has a good basis, either may win by chance.
-  if (settings_.profile == Profile::kMain && !rival.has_high_rank()) return true;
-  EncoderSettings fast = settings_;
-  fast.preset = Preset::kFast;
-  const SequenceCoding coding(header, fast, source_.triangles());
-  const std::size_t count = std::max<std::size_t>(spans_.size() / kPart, 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    const FrameRange& span = spans_[(2 * i + 1) * spans_.size() / (2 * count)];
-    SpanBatch batch(coding, source_, {span}, {});
-    const auto trial = first_trial(task(fast), batch);
-    if (!trial) return trial.error();
-    const double far = rival.has_high_rank() ? kFarHigh : kFarLow;
-    if (!rival.is_out_of_reach(*trial, span.first, far)) return false;
-  }
-  return true;
 }
 
 InputResult<TargetResult> SequenceEncoder::search(const Rival* rival) {
@@ -409,15 +372,7 @@ std::uint64_t SequenceEncoder::bytes_of(const TargetResult& result) const {
 InputResult<TargetResult> SequenceEncoder::find(const Rival* rival) {
   if (auto error = prepare()) return *error;
   const ThreadPool::Use use(*threads_);
-  const GivingUp end = giving_up(coding_->header());
-  if (end == GivingUp::kNever) rival = nullptr;
-  if (rival != nullptr && end == GivingUp::kAfterSample) {
-    const auto gives_up = is_hopeless(*rival);
-    if (!gives_up) return gives_up.error();
-    TargetResult none;
-    none.given_up = true;
-    if (*gives_up) return none;
-  }
+  if (!may_give_up(coding_->header())) rival = nullptr;
   auto best = search(rival);
   if (best && !best->given_up && settings_.target.kind == Target::kBpvf) {
     if (auto error = search_on_finer_grid(*best)) return *error;

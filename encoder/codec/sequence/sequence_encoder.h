@@ -48,7 +48,6 @@ class SequenceEncoder {
   void use_grid(const GridChoice& grid);
   std::optional<InputError> cut_gofs(const SequenceHeader& header);
   TargetTask task(const EncoderSettings& settings) const;
-  InputResult<bool> is_hopeless(const Rival& rival);
   InputResult<TargetResult> search(const Rival* rival);
   std::optional<InputError> search_on_finer_grid(TargetResult& best);
   double fixed_bits() const;

@@ -89,7 +89,7 @@ InputResult<TargetResult> search_steps(const TargetTask& task, SpanBatch& batch,
     const bool is_stuck =
         !search.met() && batch.uses_earlier_rigs() && trial->gof_bytes == bytes;
     bytes = trial->gof_bytes;
-    const bool is_hopeless = task.rival && task.rival->is_out_of_reach(*trial, 0, kFarAll);
+    const bool is_hopeless = task.rival && task.rival->is_out_of_reach(*trial, kFarAll);
     if (better || !best) best = TargetResult{std::move(*trial), search.last_step(), value};
     best->given_up = is_hopeless;
     if (is_stuck || is_hopeless) break;
@@ -148,12 +148,6 @@ InputResult<TargetResult> reach_target(const TargetTask& task, SpanBatch& batch)
   }
   if (is_missed() && batch.use_last_resort()) search_again(task);
   return best;
-}
-
-InputResult<BatchTrial> first_trial(const TargetTask& task, SpanBatch& batch) {
-  const auto search = begin_search(task, batch, 0);
-  if (!search) return search.error();
-  return batch.encode(search->step(), search->analysis_step(), progress_of(task, 1));
 }
 
 }  // namespace rlpc

@@ -44,7 +44,4 @@ struct TargetResult {
 // batch. Errors: errors of the batch.
 InputResult<TargetResult> reach_target(const TargetTask& task, SpanBatch& batch);
 
-// Runs the first encoding of that search. Errors: errors of the batch.
-InputResult<BatchTrial> first_trial(const TargetTask& task, SpanBatch& batch);
-
 }  // namespace rlpc

@@ -1,13 +1,33 @@
 #include "encoder/codec/spans/kind_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
-#include "common/parallel/for_each.h"
 #include "encoder/codec/spans/lagrangian.h"
 
 namespace rlpc {
+namespace {
+
+// Returns what a coder that took `cost` at a step takes at about another squared error.
+SpanCost cost_at_error(SpanCoder& coder, const SpanFrames& frames, double step,
+                       const SpanCost& cost, double squared_error) {
+  // fixed: bits_at_equal_error() is right about smaller differences.
+  constexpr double kNear = 1.1;
+  constexpr int kMaxTrials = 2;  // fixed: the error barely differs from its forecast
+  SpanCost found = cost;
+  double scaled = step;
+  for (int i = 0; i < kMaxTrials && found.squared_error > 0.0 && squared_error > 0.0; ++i) {
+    const double ratio = squared_error / found.squared_error;
+    if (is_within(kNear, ratio, 1.0)) break;
+    scaled *= std::sqrt(ratio);
+    found = cost_of(coder.encode(scaled, scaled), frames);
+  }
+  return found;
+}
+
+}  // namespace
 
 KindSearch::KindSearch(const KindEncoders& kinds, const SpanFrames& frames, Preset preset)
     : kinds_(kinds), frames_(frames), preset_(preset), coders_(kinds.size()) {
@@ -37,25 +57,29 @@ EncodedSpan KindSearch::compare(double step, double analysis_step) {
   is_compared_ = true;
   coders_.front()->analyse(analysis_step);
   const std::uint32_t components = coders_.front()->expected_components();
-  std::vector<std::size_t> tried{0};
+  std::vector<std::size_t> others;
   for (std::size_t k = 1; k < kinds_.size(); ++k) {
-    if (preset_ != Preset::kSlow && !kinds_[k]->may_win(frames_, components)) continue;
-    coders_[k] = kinds_[k]->make_coder(frames_);
-    tried.push_back(k);
+    if (preset_ == Preset::kSlow || kinds_[k]->may_win(frames_, components))
+      others.push_back(k);
   }
-  std::vector<EncodedSpan> encoded(tried.size());
-  std::vector<double> cost(tried.size());
-  for_each(tried.size(), [&](std::size_t i) {
-    encoded[i] = coders_[tried[i]]->encode(step, analysis_step);
-    cost[i] = tried.size() > 1 ? lagrangian_cost(encoded[i], frames_, step) : 0.0;
-  });
-  const auto best =
-      static_cast<std::size_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
-  chosen_ = tried[best];
-  for (const std::size_t k : tried) {
-    if (k != chosen_ && k > 0) coders_[k].reset();
+  EncodedSpan best = coders_.front()->encode(step, analysis_step);
+  if (others.empty()) return best;
+  SpanCost best_cost = cost_of(best, frames_);
+  for (const std::size_t k : others) {
+    std::unique_ptr<SpanCoder> coder = kinds_[k]->make_coder(frames_);
+    if (coder->is_out_of_reach(step, best_cost) && preset_ != Preset::kSlow) continue;
+    EncodedSpan encoded = coder->encode(step, analysis_step);
+    const SpanCost cost = cost_of(encoded, frames_);
+    const SpanCost at_equal_error =
+        cost_at_error(*coder, frames_, step, cost, best_cost.squared_error);
+    if (ratio_at_equal_error(at_equal_error, best_cost) >= 1.0) continue;
+    if (chosen_ > 0) coders_[chosen_].reset();
+    coders_[k] = std::move(coder);
+    chosen_ = k;
+    best = std::move(encoded);
+    best_cost = cost;
   }
-  return std::move(encoded[best]);
+  return best;
 }
 
 void KindSearch::release_analysis() {

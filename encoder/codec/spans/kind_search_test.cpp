@@ -18,49 +18,56 @@ struct Calls {
   int released = 0;
 };
 
-// Returns an encoding of a fixed size, without error.
+// What a kind and its coders answer.
+struct Answers {
+  std::size_t bytes = 0;     // size of an encoding
+  std::uint32_t min = 0;     // number of components of the likeliest kind from which it may win
+  std::size_t expected = 0;  // size that its sample leads to; 0: it has no sample
+  double squared_error = 0.0;
+};
+
 class FakeCoder : public SpanCoder {
  public:
-  FakeCoder(std::size_t bytes, Calls& calls) : bytes_(bytes), calls_(calls) {}
+  FakeCoder(const Answers& answers, Calls& calls) : answers_(answers), calls_(calls) {}
   std::uint32_t expected_components() const override { return 10; }
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return false; }
   EncodedSpan encode(double /*step*/, double /*analysis_step*/) override {
     ++calls_.encodings;
     EncodedSpan encoded;
-    encoded.units.push_back({UnitType::kGof, std::vector<std::uint8_t>(bytes_)});
-    encoded.frame = [](std::uint32_t, std::span<std::int32_t>) {};
+    encoded.units.push_back({UnitType::kGof, std::vector<std::uint8_t>(answers_.bytes)});
+    encoded.squared_error = answers_.squared_error;
     return encoded;
   }
   void release_analysis() override { ++calls_.released; }
+  bool is_out_of_reach(double /*step*/, const SpanCost& rival) override {
+    return 8.0 * static_cast<double>(answers_.expected) > rival.bits;
+  }
 
  private:
-  std::size_t bytes_;
+  Answers answers_;
   Calls& calls_;
 };
 
 class FakeKind : public KindEncoder {
  public:
-  // min: number of components of the likeliest kind from which this one may win.
-  FakeKind(std::size_t bytes, std::uint32_t min, Calls& calls)
-      : bytes_(bytes), min_(min), calls_(calls) {}
+  FakeKind(const Answers& answers, Calls& calls) : answers_(answers), calls_(calls) {}
   std::unique_ptr<SpanCoder> make_coder(const SpanFrames& /*frames*/) const override {
-    return std::make_unique<FakeCoder>(bytes_, calls_);
+    return std::make_unique<FakeCoder>(answers_, calls_);
   }
   bool may_win(const SpanFrames& /*frames*/, std::uint32_t components) const override {
     ++calls_.questions;
-    return components >= min_;
+    return components >= answers_.min;
   }
 
  private:
-  std::size_t bytes_;
-  std::uint32_t min_;
+  Answers answers_;
   Calls& calls_;
 };
 
 struct Fixture {
-  void add(std::size_t bytes, std::uint32_t min) {
+  void add(const Answers& answers) {
     calls.push_back(std::make_unique<Calls>());
-    kinds.push_back(std::make_unique<FakeKind>(bytes, min, *calls.back()));
+    kinds.push_back(std::make_unique<FakeKind>(answers, *calls.back()));
   }
   static std::size_t bytes(SpanCoder& search, double step) {
     return search.encode(step, step).units.front().payload.size();
@@ -73,9 +80,9 @@ struct Fixture {
 
 TEST(KindSearch, TakesTheCheapestKind) {
   Fixture f;
-  f.add(100, 0);
-  f.add(80, 10);
-  f.add(90, 10);
+  f.add({.bytes = 100, .min = 0});
+  f.add({.bytes = 80, .min = 10});
+  f.add({.bytes = 90, .min = 10});
   KindSearch search(f.kinds, f.frames, Preset::kMedium);
   EXPECT_EQ(Fixture::bytes(search, 10.0), 80U);
   // At a nearby step the choice is kept.
@@ -87,9 +94,9 @@ TEST(KindSearch, TakesTheCheapestKind) {
 
 TEST(KindSearch, EncodesOnlyKindsThatMayWin) {
   Fixture f;
-  f.add(100, 0);
-  f.add(50, 11);
-  f.add(60, 10);
+  f.add({.bytes = 100, .min = 0});
+  f.add({.bytes = 50, .min = 11});
+  f.add({.bytes = 60, .min = 10});
   KindSearch search(f.kinds, f.frames, Preset::kMedium);
   EXPECT_EQ(Fixture::bytes(search, 10.0), 60U);
   EXPECT_EQ(f.calls[1]->questions, 1);
@@ -100,17 +107,39 @@ TEST(KindSearch, EncodesOnlyKindsThatMayWin) {
 
 TEST(KindSearch, SlowPresetEncodesAllKinds) {
   Fixture f;
-  f.add(100, 0);
-  f.add(50, 99);
+  f.add({.bytes = 100, .min = 0});
+  f.add({.bytes = 50, .min = 99});
   KindSearch search(f.kinds, f.frames, Preset::kSlow);
   EXPECT_EQ(Fixture::bytes(search, 10.0), 50U);
   EXPECT_EQ(f.calls[1]->questions, 0);
 }
 
+TEST(KindSearch, SkipsKindsWhoseSampleLosesToTheBest) {
+  Fixture f;
+  f.add({.bytes = 100, .min = 0});
+  f.add({.bytes = 80, .expected = 99});
+  f.add({.bytes = 70, .expected = 90});  // less than the first kind, more than the second
+  KindSearch search(f.kinds, f.frames, Preset::kMedium);
+  EXPECT_EQ(Fixture::bytes(search, 10.0), 80U);
+  EXPECT_EQ(f.calls[1]->encodings, 1);
+  EXPECT_EQ(f.calls[2]->encodings, 0);
+  KindSearch slow(f.kinds, f.frames, Preset::kSlow);
+  EXPECT_EQ(Fixture::bytes(slow, 10.0), 70U);
+}
+
+// At this step, the second has the lower Lagrangian cost.
+TEST(KindSearch, ComparesAtEqualError) {
+  Fixture f;
+  f.add({.bytes = 100, .squared_error = 30000.0});
+  f.add({.bytes = 175, .squared_error = 20000.0});
+  KindSearch search(f.kinds, f.frames, Preset::kMedium);
+  EXPECT_EQ(Fixture::bytes(search, 10.0), 100U);
+}
+
 TEST(KindSearch, ComparesOnce) {
   Fixture f;
-  f.add(100, 0);
-  f.add(50, 9);
+  f.add({.bytes = 100, .min = 0});
+  f.add({.bytes = 50, .min = 9});
   KindSearch search(f.kinds, f.frames, Preset::kMedium);
   EXPECT_TRUE(search.needs_frames(10.0, 10.0));
   Fixture::bytes(search, 10.0);
@@ -122,8 +151,8 @@ TEST(KindSearch, ComparesOnce) {
 
 TEST(KindSearch, ReleasesTheAnalysesOfItsCoders) {
   Fixture f;
-  f.add(100, 0);
-  f.add(80, 10);
+  f.add({.bytes = 100, .min = 0});
+  f.add({.bytes = 80, .min = 10});
   KindSearch search(f.kinds, f.frames, Preset::kMedium);
   search.release_analysis();
   EXPECT_EQ(f.calls[0]->released, 1);

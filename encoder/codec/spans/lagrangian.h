@@ -29,14 +29,21 @@ inline double bits_of(const EncodedSpan& encoded) { return bits_of(encoded.units
 // frame, unless each is predicted from others, and decoding takes time.
 inline constexpr std::uint32_t kErrorFrames = 24;
 
-// Returns D + lambda R of an encoded GOF: the squared error of its decoded frames, from a
-// sample unless it is known, and the bits of its units.
+// Returns the bits of the units of an encoded GOF, and the squared error of its decoded frames,
+// from a sample unless it is known.
+inline SpanCost cost_of(const EncodedSpan& encoded, const SpanFrames& frames) {
+  return {bits_of(encoded), encoded.squared_error
+                                ? *encoded.squared_error
+                                : squared_error(frames, encoded.frame, kErrorFrames)};
+}
+
+// Returns D + lambda R.
+inline double lagrangian_cost(const SpanCost& cost, double step) {
+  return cost.squared_error + lambda(step) * cost.bits;
+}
 inline double lagrangian_cost(const EncodedSpan& encoded, const SpanFrames& frames,
                               double step) {
-  const double error = encoded.squared_error
-                           ? *encoded.squared_error
-                           : squared_error(frames, encoded.frame, kErrorFrames);
-  return error + lambda(step) * bits_of(encoded);
+  return lagrangian_cost(cost_of(encoded, frames), step);
 }
 
 // Estimates bits at equal error, to compare encodings at one step whose errors differ much.
@@ -46,6 +53,12 @@ inline double bits_at_equal_error(double bits, double squared_error) {
   constexpr double kRateOfError = -0.25;
   constexpr double kMinError = 1e-6;  // fixed: above zero
   return bits * det_exp2(-kRateOfError * det_log2(std::max(squared_error, kMinError)));
+}
+
+// Returns how many times as many bits an encoding takes as another at equal error.
+inline double ratio_at_equal_error(const SpanCost& cost, const SpanCost& other) {
+  return bits_at_equal_error(cost.bits, cost.squared_error) /
+         bits_at_equal_error(other.bits, other.squared_error);
 }
 
 }  // namespace rlpc

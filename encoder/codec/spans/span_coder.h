@@ -48,6 +48,11 @@ struct InterChoice {
   bool operator==(const InterChoice&) const = default;
 };
 
+struct SpanCost {
+  double bits = 0.0;
+  double squared_error = 0.0;  // squared grid steps, of all values
+};
+
 // One encoding of a span.
 struct EncodedSpan {
   struct Unit {
@@ -97,6 +102,9 @@ class SpanCoder {
   // analyse for; an analysis is reused as long as analysis_step stays the same.
   virtual EncodedSpan encode(double step, double analysis_step) = 0;
   virtual void release_analysis() = 0;
+  // Whether encode(step) can be expected to cost clearly more than another encoding of the same
+  // span, at equal error. False: it may cost less, or finding out takes as long as encode().
+  virtual bool is_out_of_reach(double /*step*/, const SpanCost& /*rival*/) { return false; }
 };
 
 }  // namespace rlpc

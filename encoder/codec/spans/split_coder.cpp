@@ -82,6 +82,23 @@ EncodedSpan SplitCoder::encode(double step, double analysis_step) {
   return all;
 }
 
+bool SplitCoder::is_out_of_reach(double step, const SpanCost& rival) {
+  constexpr std::size_t kAsked = 2;  // fixed: GOFs differ less than their sample from the mesh
+  const std::vector<FrameRange> gofs = frames_.gofs();
+  const std::size_t count = std::min(gofs.size(), kAsked);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t g = (2 * i + 1) * gofs.size() / (2 * count);
+    Part& part = *parts_[g];
+    const double share = static_cast<double>(gofs[g].count) / frames_.num_frames;
+    part.frames = frames_in_gof(frames_, gofs[g]);
+    const bool is_out =
+        part.coder->is_out_of_reach(step, {share * rival.bits, share * rival.squared_error});
+    part.frames.xyz = {};
+    if (!is_out) return false;
+  }
+  return true;
+}
+
 void SplitCoder::release_analysis() {
   for (const auto& part : parts_) part->coder->release_analysis();
 }

@@ -23,6 +23,8 @@ class SplitCoder : public SpanCoder {
   bool needs_frames(double step, double analysis_step) const override;
   EncodedSpan encode(double step, double analysis_step) override;
   void release_analysis() override;
+  // Asks the coders of at most two GOFs.
+  bool is_out_of_reach(double step, const SpanCost& rival) override;
 
  private:
   struct Part {

@@ -6,23 +6,39 @@
 #include <utility>
 
 #include "encoder/codec/kinds/cluster/cluster_gof_search.h"
+#include "encoder/codec/kinds/cluster/cluster_sample.h"
+#include "encoder/codec/spans/lagrangian.h"
 #include "encoder/codec/spans/split_coder.h"
 #include "encoder/codec/spans/step_cache.h"
 
 namespace rlpc {
 namespace {
 
-// tuned (off: 0): Clusters are tried only where trajectories number at least this fraction of
-// their maximum. Below, one set of components for all vertices is the better basis.
+// tuned (off: 0): Without a sample, clusters are tried only where trajectories number at least
+// this fraction of their maximum. Below, one set of components for all vertices is usually the
+// better basis.
 constexpr double kHighRank = 0.4;
+
+// tuned (off: 0): Estimates above the rival by less than this factor may be wrong.
+constexpr double kMargin = 1.15;
 
 class ClusterSpanCoder : public SpanCoder {
  public:
   explicit ClusterSpanCoder(const ClusterGofCoding& coding) : coding_(coding) {}
 
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return true; }
+  bool is_out_of_reach(double step, const SpanCost& rival) override {
+    if (!uses_sample()) return false;
+    const ClusterSample sample(coding_.mesh(), coding_.settings(), coding_.frames());
+    const ClusterSample::Estimate estimate = sample.cheapest(step);
+    choice_ = estimate.choice;
+    return ratio_at_equal_error(estimate.cost, rival) > kMargin;
+  }
   EncodedSpan encode(double step, double analysis_step) override {
-    if (!clusters_) clusters_ = search_clusters(coding_, step);
+    if (!clusters_) {
+      clusters_ = choice_ ? search_clusters_near(coding_, step, *choice_)
+                          : search_clusters(coding_, step);
+    }
     return coding_.encode(step, analysis_.get(analysis_step, [&] {
       if (clusters_->analysis) {
         ClusterGofAnalysis analysis = std::move(*clusters_->analysis);
@@ -35,7 +51,15 @@ class ClusterSpanCoder : public SpanCoder {
   void release_analysis() override { analysis_.release(); }
 
  private:
+  bool uses_sample() const {
+    const BaselineTools& tools = coding_.settings().baseline;
+    return tools.clusters == 0 && tools.frame_mode == FrameMode::kAuto &&
+           ClusterSample::saves_time(coding_.frames().num_vertices,
+                                     coding_.frames().num_frames);
+  }
+
   ClusterGofCoding coding_;
+  std::optional<ClusterChoice> choice_;  // by a sample of the mesh
   std::optional<FoundClusters> clusters_;
   StepCache<ClusterGofAnalysis> analysis_;
 };
@@ -54,7 +78,11 @@ class ClusterGofKind : public KindEncoder {
   }
 
   bool may_win(const SpanFrames& frames, std::uint32_t components) const override {
-    return components >= kHighRank * std::min(frames.num_vertices, 3 * frames.num_frames);
+    if (ClusterSample::saves_time(frames.num_vertices, frames.num_frames / frames.num_gofs)) {
+      return true;
+    }
+    return settings_.preset != Preset::kFast && settings_.target.kind != Target::kMaxError &&
+           components >= kHighRank * std::min(frames.num_vertices, 3 * frames.num_frames);
   }
 
  private:
@@ -64,18 +92,15 @@ class ClusterGofKind : public KindEncoder {
 
 }  // namespace
 
-// In the Main profile, clusters are compared with bones unless the preset is fast, the target
-// is the maximum error, or any Main tool is set explicitly. The Lagrangian cost does not
-// predict the maximum error, which is usually smaller with bones.
+// In the Main and High profiles, clusters are compared with bones unless any Main tool is set
+// explicitly.
 std::unique_ptr<KindEncoder> make_cluster_gof_kind(const SequenceMesh& mesh,
                                                    const EncoderSettings& settings) {
   if (settings.usable_kind() == GofKind::kCluster) {
     return std::make_unique<ClusterGofKind>(mesh, settings);
   }
   if (settings.usable_kind()) return nullptr;
-  const bool suits_main = settings.preset != Preset::kFast && settings.main == MainTools{} &&
-                          settings.target.kind != Target::kMaxError;
-  if (settings.profile != Profile::kBaseline && !suits_main) return nullptr;
+  if (settings.profile != Profile::kBaseline && settings.main != MainTools{}) return nullptr;
   return std::make_unique<ClusterGofKind>(mesh, settings);
 }
 

@@ -42,6 +42,19 @@ class ClusterSearch {
     return {choice, coding_.cluster(*maker_, choice.clusters)};
   }
 
+  FoundClusters run_near(const ClusterChoice& choice) {
+    if (coding_.settings().preset == Preset::kFast) {
+      return {choice, coding_.cluster(*maker_, choice.clusters)};
+    }
+    std::size_t start = 0;
+    while (start + 1 < kNumCounts && count_at(start) < choice.clusters) ++start;
+    ClusterChoice best{choose_count(choice.world, start, 1), choice.world};
+    // A sample does not show that one set of components suits the whole mesh.
+    const ClusterChoice one{1, true};
+    if (cost(one) < cost(best)) best = one;
+    return {best, coding_.cluster(*maker_, best.clusters)};
+  }
+
  private:
   FoundClusters better_extreme() {
     std::array<FoundClusters, 2> found;
@@ -76,16 +89,19 @@ class ClusterSearch {
     return last;
   }
 
-  // Climbs from a middling number of clusters while the cost falls.
   std::uint32_t choose_count(bool world) {
+    return choose_count(world, world ? 0 : kFirstCount,
+                        coding_.settings().preset == Preset::kSlow ? 1 : 2);
+  }
+  // Climbs from a number of clusters, count_at(start), while the cost falls.
+  std::uint32_t choose_count(bool world, std::size_t start, std::size_t stride) {
     const std::size_t last = last_count();
     std::array<double, kNumCounts> known{};
     const auto cost_at = [&](std::size_t i) {
       if (known[i] == 0.0) known[i] = cost({count_at(i), world});
       return known[i];
     };
-    std::size_t best = std::min<std::size_t>(last, world ? 0 : kFirstCount);
-    const std::size_t stride = coding_.settings().preset == Preset::kSlow ? 1 : 2;
+    std::size_t best = std::min(last, start);
     for (const bool up : {true, false}) {
       for (std::size_t i = best; up ? i + stride <= last : i >= stride;) {
         i = up ? i + stride : i - stride;
@@ -129,6 +145,11 @@ class ClusterSearch {
 
 FoundClusters search_clusters(const ClusterGofCoding& coding, double step) {
   return ClusterSearch(coding, step).run();
+}
+
+FoundClusters search_clusters_near(const ClusterGofCoding& coding, double step,
+                                   const ClusterChoice& choice) {
+  return ClusterSearch(coding, step).run_near(choice);
 }
 
 std::uint32_t usual_clusters(std::uint32_t num_vertices) {

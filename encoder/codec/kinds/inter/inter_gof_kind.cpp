@@ -1,109 +1,96 @@
 #include "encoder/codec/kinds/inter/inter_gof_kind.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <map>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "common/codec/mesh/ordered_meshes.h"
-#include "encoder/codec/kinds/inter/first_frame.h"
-#include "encoder/codec/kinds/inter/inter_settings.h"
+#include "encoder/codec/kinds/inter/inter_sample.h"
 #include "encoder/codec/kinds/inter/inter_trial.h"
 #include "encoder/codec/kinds/inter/pattern_search.h"
+#include "encoder/codec/kinds/inter/trial_maker.h"
 #include "encoder/codec/spans/split_coder.h"
 
 namespace rlpc {
 namespace {
 
-// tuned (off: 1): Inter GOFs are tried where trajectories number at least this fraction of
-// their maximum. Below, trajectories of all frames are the better basis.
+// tuned (off: 1): Without a sample, inter GOFs are tried where trajectories number at least
+// this fraction of their maximum. Below, trajectories of all frames are the better basis.
 constexpr double kManyTrajectories = 0.3;
-
-// fixed: A unit costs some 13 bytes besides its residuals, 0.3 % of this.
-constexpr std::size_t kUnitBytes = 4096;
-
-UnitLimits unit_limits(const EncoderSettings& settings) {
-  constexpr auto kAny = std::numeric_limits<std::uint32_t>::max();
-  const auto& frames = settings.inter.frames_per_unit;
-  return frames ? UnitLimits{*frames, kAny} : UnitLimits{kAny, kUnitBytes};
-}
 
 // Choices at a step hold for all steps within kAnalysisServes.
 class InterSpanCoder : public SpanCoder {
  public:
   InterSpanCoder(const SequenceMesh& mesh, const OrderedMesh& layers,
                  const EncoderSettings& settings, const SpanFrames& frames)
-      : mesh_(mesh), layers_(layers), settings_(settings), frames_(frames) {}
+      : mesh_(mesh),
+        settings_(settings),
+        frames_(frames),
+        maker_(mesh, layers, settings, frames) {}
 
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return true; }
   void release_analysis() override {}
   EncodedSpan encode(double step, double /*analysis_step*/) override;
+  bool is_out_of_reach(double step, const SpanCost& rival) override;
 
  private:
+  void choose(double step, const StartTrial& start);
+  InterSample* sample();
+
   const SequenceMesh& mesh_;
-  const OrderedMesh& layers_;
   const EncoderSettings& settings_;
   const SpanFrames& frames_;
-  void choose(const StartTrial& start);
-  const PatchOfVertex& patches(std::uint32_t count);
-  std::shared_ptr<const RestEncoding> first_frame(const InterSettings& chosen);
-
-  std::vector<InterChoice> choices_;                // still to be compared
-  std::map<std::uint32_t, PatchOfVertex> patches_;  // [number of patches]
-  double chosen_at_ = 0.0;                          // step at which choices were made
-  // [step of depth 0], for one call of encode().
-  std::map<std::uint32_t, std::shared_ptr<const RestEncoding>> first_frames_;
+  TrialMaker maker_;
+  std::unique_ptr<InterSample> sample_;
+  std::vector<InterChoice> choices_;  // still to be compared
+  double chosen_at_ = 0.0;            // step at which choices were made
 };
 
 EncodedSpan InterSpanCoder::encode(double step, double /*analysis_step*/) {
   const StartTrial start = [&](const InterChoice& choice) {
-    InterSettings chosen = choose_frame_settings(mesh_.header, settings_, layers_,
-                                                 choice.pattern, step * choice.step_scale);
-    set_patches(chosen, patches(choice.num_patches));
-    return std::make_unique<InterTrial>(layers_, mesh_.header, frames_, chosen,
-                                        unit_limits(settings_), choice, first_frame(chosen));
+    return maker_.start(choice, step);
   };
-  first_frames_.clear();
+  maker_.forget_first_frames();
   if (choices_.empty() || !is_within(kAnalysisServes, step, chosen_at_)) {
     chosen_at_ = step;
-    choose(start);
+    choose(step, start);
   }
   EncodedSpan encoded = cheapest(choices_, frames_.num_frames, start)->finish();
   choices_ = encoded.choices;
   return encoded;
 }
 
-// Chooses the number of patches first; patterns are then compared with it.
-void InterSpanCoder::choose(const StartTrial& start) {
+// Chooses the number of patches first; patterns are then compared with it. If there is a
+// sample, it chooses the pattern, and some frames the number of patches.
+void InterSpanCoder::choose(double step, const StartTrial& start) {
   const bool is_open_ended = mesh_.header.open_end_flag;
-  const auto patterns = patterns_of(settings_, is_open_ended, frames_.num_frames);
-  const auto numbers =
-      choices_of_patches(patterns, patches_of(settings_, is_open_ended, frames_.num_frames));
-  const std::uint32_t patches =
-      numbers.size() > 1 ? cheapest(numbers, frames_.num_frames, start)->choice().num_patches
-                         : numbers.front().num_patches;
+  const std::uint32_t num_frames = frames_.num_frames;
+  const auto numbers = patches_of(settings_, is_open_ended, num_frames);
+  auto patterns = patterns_of(settings_, is_open_ended, num_frames);
+  std::uint32_t patches = numbers.front();
+  if (InterSample* const by = sample(); by && settings_.preset != Preset::kSlow) {
+    const auto compared = choices_of_patches({patterns.front()}, numbers);
+    patches = cheapest_at_start(compared, num_frames, start).num_patches;
+    patterns = {by->cheapest_pattern(step)};
+  } else if (numbers.size() > 1) {
+    const auto compared = choices_of_patches(patterns, numbers);
+    patches = cheapest(compared, num_frames, start)->choice().num_patches;
+  }
   choices_.clear();
   for (const FramePattern& pattern : patterns) choices_.push_back({pattern, patches});
 }
 
-const PatchOfVertex& InterSpanCoder::patches(std::uint32_t count) {
-  PatchOfVertex& patches = patches_[count];
-  if (patches.empty()) {
-    patches = divide_into_patches(mesh_.header, settings_, frames_, mesh_.triangles, count);
-  }
-  return patches;
+bool InterSpanCoder::is_out_of_reach(double step, const SpanCost& rival) {
+  return sample() && sample()->is_out_of_reach(step, rival);
 }
 
-std::shared_ptr<const RestEncoding> InterSpanCoder::first_frame(const InterSettings& chosen) {
-  const auto found = first_frames_.find(chosen.step[0]);
-  if (found != first_frames_.end()) return found->second;
-  const auto xyz = std::span(frames_.xyz).first(3 * std::size_t{frames_.num_vertices});
-  return first_frames_[chosen.step[0]] =
-             code_first_frame(layers_, chosen, mesh_.header, settings_, xyz);
+// Returns the sample, which is made once; null if it would save no time.
+InterSample* InterSpanCoder::sample() {
+  if (!sample_ && InterSample::saves_time(frames_.num_vertices, frames_.num_frames)) {
+    sample_ = std::make_unique<InterSample>(mesh_, settings_, frames_);
+  }
+  return sample_.get();
 }
 
 class InterGofKind : public KindEncoder {
@@ -121,8 +108,9 @@ class InterGofKind : public KindEncoder {
   }
 
   bool may_win(const SpanFrames& frames, std::uint32_t components) const override {
-    return components >=
-           kManyTrajectories * std::min(frames.num_vertices, 3 * frames.num_frames);
+    return InterSample::saves_time(frames.num_vertices, frames.num_frames / frames.num_gofs) ||
+           components >=
+               kManyTrajectories * std::min(frames.num_vertices, 3 * frames.num_frames);
   }
 
  private:

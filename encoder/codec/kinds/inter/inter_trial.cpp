@@ -130,11 +130,16 @@ std::uint32_t InterTrial::reference_distance(const FramePlace& place) const {
   return from_earlier < bits_from(mesh_, xyz, reference, step) ? distance : 0;
 }
 
-double InterTrial::cost() const {
+SpanCost InterTrial::expected(std::uint32_t num_frames) const {
   const double coded = num_coded_ - 1.0;
-  const double share = coded > 0.0 ? (frames_.num_frames - 1.0) / coded : 1.0;
-  const double expected = bits_of_start_ + share * (bits() - bits_of_start_);
-  return settings_.exact_flag ? expected : bits_at_equal_error(expected, squared_error_);
+  const double share = coded > 0.0 ? (num_frames - 1.0) / coded : 1.0;
+  return {bits_of_start_ + share * (bits() - bits_of_start_),
+          squared_error_ * num_frames / num_coded_};
+}
+
+double InterTrial::cost() const {
+  const double bits = expected(frames_.num_frames).bits;
+  return settings_.exact_flag ? bits : bits_at_equal_error(bits, squared_error_);
 }
 
 EncodedSpan InterTrial::finish() {

@@ -50,6 +50,8 @@ class InterTrial {
   // Estimates the cost of the whole GOF from the frames coded so far: bits at equal error, or
   // bits if it is lossless. At least two frames must be coded, unless there is only one.
   double cost() const;
+  // Expects the same of a GOF with `num_frames` frames that goes on like those coded so far.
+  SpanCost expected(std::uint32_t num_frames) const;
   // Returns the squared error of the frames coded so far, over all values, squared grid units.
   double squared_error() const { return squared_error_; }
   // Codes the remaining frames. Call it once.

@@ -105,6 +105,26 @@ std::vector<InterChoice> choices_of_patches(const std::vector<FramePattern>& pat
   return choices;
 }
 
+InterChoice cheapest_at_start(const std::vector<InterChoice>& choices, std::uint32_t num_frames,
+                              const StartTrial& start) {
+  constexpr std::size_t kPart = 8;  // tuned: a part of the frames
+  if (choices.size() == 1) return choices.front();
+  Encodings all;
+  std::uint32_t period = 1;
+  for (const InterChoice& choice : choices) {
+    all.push_back(start(choice));
+    period = std::max(period, choice.pattern.period());
+  }
+  const std::uint32_t end = whole_periods(num_frames, kPart, period);
+  code_all_to(all, end);
+  restart_at_equal_error(all, start);
+  code_all_to(all, end);
+  const auto best = std::min_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return a->cost() < b->cost();
+  });
+  return {(*best)->choice().pattern, (*best)->choice().num_patches};
+}
+
 std::unique_ptr<InterTrial> cheapest(const std::vector<InterChoice>& choices,
                                      std::uint32_t num_frames, const StartTrial& start) {
   Encodings left;

@@ -40,4 +40,8 @@ using StartTrial = std::function<std::unique_ptr<InterTrial>(const InterChoice&)
 std::unique_ptr<InterTrial> cheapest(const std::vector<InterChoice>& choices,
                                      std::uint32_t num_frames, const StartTrial& start);
 
+// Returns the choice that costs least at equal error, by the first frames.
+InterChoice cheapest_at_start(const std::vector<InterChoice>& choices, std::uint32_t num_frames,
+                              const StartTrial& start);
+
 }  // namespace rlpc

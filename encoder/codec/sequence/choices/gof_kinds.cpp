@@ -10,9 +10,10 @@
 namespace rlpc {
 namespace {
 
-// A new kind of GOF adds its factory here.
-constexpr std::array<MakeKindEncoder, 3> kFactories{make_skinned_gof_kind,
-                                                    make_cluster_gof_kind, make_inter_gof_kind};
+// A new kind of GOF adds its factory here. They are compared in this order; the last wins least
+// often.
+constexpr std::array<MakeKindEncoder, 3> kFactories{make_skinned_gof_kind, make_inter_gof_kind,
+                                                    make_cluster_gof_kind};
 
 }  // namespace
 

@@ -1,0 +1,60 @@
+// Estimates from a part of the mesh what an inter GOF takes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/codec/kinds/inter/frame_order.h"
+#include "common/codec/mesh/ordered_meshes.h"
+#include "common/codec/mesh/topology.h"
+#include "encoder/codec/kinds/inter/trial_maker.h"
+#include "encoder/codec/partition/mesh_sample.h"
+#include "encoder/codec/settings.h"
+#include "encoder/codec/spans/sequence_mesh.h"
+#include "encoder/codec/spans/span_coder.h"
+#include "encoder/codec/spans/span_frames.h"
+#include "encoder/codec/spans/step_cache.h"
+
+namespace rlpc {
+
+// Codes consecutive frames of regions of the mesh. First frames take a few bits more than those
+// of the whole mesh, which may be predicted from counterparts.
+class InterSample {
+ public:
+  // Keeps a reference to the header of the mesh.
+  InterSample(const SequenceMesh& mesh, const EncoderSettings& settings,
+              const SpanFrames& frames);
+  InterSample(const InterSample&) = delete;
+  InterSample& operator=(const InterSample&) = delete;
+
+  // Whether the sample is so small a part of a GOF that encoding it saves time.
+  static bool saves_time(std::uint32_t num_vertices, std::uint32_t num_frames);
+  // Whether the whole GOF takes clearly more bits than the rival, at equal error. step: as in
+  // SpanCoder::encode().
+  bool is_out_of_reach(double step, const SpanCost& rival);
+  // Returns the pattern that costs least without patches.
+  const FramePattern& cheapest_pattern(double step);
+
+ private:
+  SpanCost whole(const InterTrial& trial) const;
+  bool may_follow(InterTrial& trial, const SpanCost& rival) const;
+  std::unique_ptr<InterTrial> cheapest_of(const std::vector<InterChoice>& choices, double step);
+  std::uint32_t patches_of_sample(std::uint32_t count) const;
+
+  const std::uint32_t num_vertices_;  // of the whole mesh
+  const std::uint32_t num_frames_;    // of the whole GOF
+  const FrameRange window_;           // frames that are coded
+  const MeshSample sample_;
+  const SpanFrames frames_;
+  const std::vector<FramePattern> patterns_;  // to compare
+  const std::vector<std::uint32_t> patches_;  // numbers of patches of the whole mesh to compare
+  const EncoderSettings settings_;
+  const Topology topology_;
+  const OrderedMeshes meshes_;
+  const SequenceMesh mesh_;
+  TrialMaker maker_;
+  StepCache<FramePattern> pattern_;
+};
+
+}  // namespace rlpc
