@@ -75,20 +75,20 @@ std::uint64_t stretch_frames(std::uint64_t gof_frames) {
 
 }  // namespace
 
-InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSettings& asked,
+InputResult<Expectation> expect_encoding(FrameSource& source, const EncoderSettings& settings,
                                          const Progress& progress) {
-  const EncoderSettings settings = complete_settings(asked, source.clips(), source.asset());
+  const EncoderSettings complete = complete_settings(settings, source.clips(), source.asset());
   const ByteSink discard = [](std::span<const std::uint8_t>) { return true; };
-  const std::uint64_t stretch = stretch_frames(longest_gof(settings, source.num_vertices()));
+  const std::uint64_t stretch = stretch_frames(longest_gof(complete, source.num_vertices()));
   if (source.num_frames() <= kStretches * std::max(stretch, kStretchFrames)) {
-    auto report = encode(source, settings, discard, progress);
+    auto report = encode(source, complete, discard, progress);
     if (!report) return report.error();
     return Expectation{std::move(*report), source.num_frames()};
   }
-  if (auto error = check_clips(settings.clips, source.num_frames())) return *error;
+  if (auto error = check_clips(complete.clips, source.num_frames())) return *error;
   StretchSource sample(source, static_cast<std::uint32_t>(stretch));
   auto encoded =
-      encode(sample, settings_of_sample(settings, sample.num_frames()), discard, progress);
+      encode(sample, settings_of_sample(complete, sample.num_frames()), discard, progress);
   if (!encoded) return encoded.error();
   EncodeReport& report = *encoded;
   const double scale = static_cast<double>(source.num_frames()) / sample.num_frames();

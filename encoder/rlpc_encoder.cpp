@@ -47,18 +47,19 @@ InputResult<Found> best_of(FrameSource& source, const EncoderSettings& settings,
     before += part;
     part = search.duration;
     std::optional<Rival> rival;
-    if (best && search.may_be_given_up) rival.emplace(settings.target, best->result.trial);
-    Found found{
-        std::make_unique<SequenceEncoder>(source, search.settings, settings.profile, shown),
-        {}};
-    auto result = found.encoder->find(rival ? &*rival : nullptr);
+    if (best && search.may_be_given_up) {
+      rival.emplace(settings.target, best->result.trial, best->result.contested);
+    }
+    auto encoder =
+        std::make_unique<SequenceEncoder>(source, search.settings, settings.profile, shown);
+    auto result = encoder->find(rival ? &*rival : nullptr);
     if (!result) {
       // The search of a contained profile may fail alone, for example at the limits of a level.
       if (best && search.may_be_given_up) continue;
       return result.error();
     }
     if (result->given_up) continue;
-    found.result = std::move(*result);
+    Found found{std::move(encoder), std::move(*result)};
     if (!best || !is_as_good(*best, found, settings.target.kind)) best = std::move(found);
   }
   return std::move(*best);
@@ -66,20 +67,20 @@ InputResult<Found> best_of(FrameSource& source, const EncoderSettings& settings,
 
 }  // namespace
 
-InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& asked,
+InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& settings,
                                  const ByteSink& sink, const Progress& progress) {
-  const EncoderSettings settings = complete_settings(asked, source.clips(), source.asset());
-  if (auto error = check_settings(settings)) return *error;
-  if (auto error = check_clips(settings.clips, source.num_frames())) return *error;
-  if (auto error = check_attributes(settings.attributes, source.attributes())) return *error;
-  if (settings.target.kind == Target::kMaxError) {
-    const auto rounding = check_rounding(source, settings.target.value);
+  const EncoderSettings complete = complete_settings(settings, source.clips(), source.asset());
+  if (auto error = check_settings(complete)) return *error;
+  if (auto error = check_clips(complete.clips, source.num_frames())) return *error;
+  if (auto error = check_attributes(complete.attributes, source.attributes())) return *error;
+  if (complete.target.kind == Target::kMaxError) {
+    const auto rounding = check_rounding(source, complete.target.value);
     if (!rounding) return rounding.error();
   }
   // The encoders refer to their settings.
   const std::vector<Search> searches =
-      list_searches(settings, source.num_vertices(), source.num_frames());
-  auto best = best_of(source, settings, searches, progress);
+      list_searches(complete, source.num_vertices(), source.num_frames());
+  auto best = best_of(source, complete, searches, progress);
   if (!best) return best.error();
   InputResult<EncodeReport> report = best->encoder->write(std::move(best->result), sink);
   if (report && progress) progress(1.0);

@@ -97,7 +97,8 @@ void CaseMaker::make_shape() {
     const Point at{3.0 * sign(), 3.0 * sign(), 3.0 * sign()};
     for (std::uint32_t v = 0; v < part_size_; ++v) {
       const double x = v % columns;
-      const double y = v / columns;
+      const std::uint32_t row = v / columns;
+      const double y = row;
       Point p{0.1 * x, 0.1 * y, 0.05 * std::sin(x + 0.7 * y)};
       if (kind_ == kManyParts) {
         for (std::size_t c = 0; c < 3; ++c) p[c] += at[c];
@@ -122,7 +123,8 @@ Point CaseMaker::moved(const Point& p, std::uint32_t vertex, double time) const 
                      kind_ == kRepeated || kind_ == kManyParts ||
                      (kind_ == kHinged && vertex >= hinge_);
   if (turns) {
-    const double part = kind_ == kManyParts ? 1.0 + vertex / part_size_ : 1.0;
+    const std::uint32_t number = vertex / part_size_;
+    const double part = kind_ == kManyParts ? 1.0 + number : 1.0;
     const double angle = spin_ * time * part;
     out[0] = std::cos(angle) * (p[0] - axis_[0]) - std::sin(angle) * (p[1] - axis_[1]);
     out[1] = std::sin(angle) * (p[0] - axis_[0]) + std::cos(angle) * (p[1] - axis_[1]);

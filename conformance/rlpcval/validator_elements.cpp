@@ -11,7 +11,7 @@ std::string describe(std::string_view rule, const char* element, std::int64_t va
                      Range allowed) {
   if (rule == "R-BIT-02") return "";
   if (rule == "R-BIT-03") return std::to_string((value + 7) / 8) + " bytes are left over";
-  const std::string text = std::string(element) + " is " + std::to_string(value);
+  std::string text = std::string(element) + " is " + std::to_string(value);
   if (allowed.min == allowed.max) return text;
   const std::string where = rule.starts_with("R-LVL") ? " at this level" : "";
   if (allowed.min == 0) return text + "; at most " + std::to_string(allowed.max) + where;

@@ -17,6 +17,8 @@ namespace rlpc {
 namespace {
 
 constexpr double kMaxLarger = 1.01;
+// Of larger animations, contained profiles are searched only if kinds of GOF come near.
+constexpr double kMaxLargerOfMany = 1.04;
 // Bytes of an index that lists shared rigs, and of flags of the sequence and of each GOF.
 constexpr std::size_t kMaxMore = 6;
 
@@ -130,11 +132,12 @@ EncoderSettings settings_of(unsigned seed) {
   return settings;
 }
 
-void expect_none_larger(const RandomAnimation& animation, const EncoderSettings& settings) {
+void expect_none_larger(const RandomAnimation& animation, const EncoderSettings& settings,
+                        double max_larger = kMaxLarger) {
   std::size_t before = bytes_of(animation, settings, Profile::kBaseline);
   for (const Profile profile : {Profile::kMain, Profile::kHigh}) {
     const std::size_t bytes = bytes_of(animation, settings, profile);
-    EXPECT_LE(static_cast<double>(bytes), kMaxLarger * static_cast<double>(before) + kMaxMore)
+    EXPECT_LE(static_cast<double>(bytes), max_larger * static_cast<double>(before) + kMaxMore)
         << "profile " << static_cast<int>(profile) << ", " << before << " bytes before";
     before = std::min(before, bytes);
   }
@@ -149,9 +152,9 @@ TEST(ContainedProfiles, AreNeverSmaller) {
 
 // Searches of these seeds were once given up too early.
 TEST(ContainedProfiles, AreNeverSmallerOnLargerMeshes) {
-  for (const unsigned seed : {7U, 28U, 39U}) {
+  for (const unsigned seed : {7U, 23U, 28U, 39U, 58U}) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    expect_none_larger(RandomAnimation(seed, true), settings_of(seed));
+    expect_none_larger(RandomAnimation(seed, true), settings_of(seed), kMaxLargerOfMany);
   }
 }
 

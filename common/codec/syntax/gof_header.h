@@ -22,14 +22,14 @@ enum class GofKind : std::uint8_t {
 
 // Properties of a kind that hold for each of its GOFs.
 struct KindProperties {
-  GofKind kind;
-  const char* name;           // in messages: "a cluster GOF"
-  bool has_rig;               // its per-vertex data are those of a shared rig
-  std::uint32_t profile_idc;  // the lowest profile with this kind
+  GofKind kind = GofKind::kCluster;
+  const char* name = "";          // in messages: "a cluster GOF"
+  bool has_rig = false;           // its per-vertex data are those of a shared rig
+  std::uint32_t profile_idc = 0;  // the lowest profile with this kind
   // Table 7-1: type of the units that may follow the GOF unit in its access unit before its
   // hash. None if no units may.
-  std::optional<UnitType> slice_type;
-  bool is_live;  // frames of an open-ended stream are output before their GOF ends
+  std::optional<UnitType> slice_type = {};
+  bool is_live = false;  // frames of an open-ended stream are output before their GOF ends
 };
 
 inline constexpr std::array<KindProperties, 4> kGofKinds{{

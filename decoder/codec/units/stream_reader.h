@@ -107,8 +107,8 @@ class StreamReader {
  private:
   struct Options {
     DecodeLimits limits;
-    bool is_coarse;
-    bool skips_damaged_units;
+    bool is_coarse = false;
+    bool skips_damaged_units = false;
   };
   // Contents of the units outside GOFs and rigs.
   struct Lead {

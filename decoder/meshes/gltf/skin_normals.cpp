@@ -356,7 +356,8 @@ PrincipalShapes targets_for(MatrixXf moves, const std::vector<Index>& moving, In
   for (Index& v : vertices) v = moving[static_cast<std::size_t>(v)];
   const double places = static_cast<double>(count * moves.cols());
   moves.resize(0, 0);
-  const double some_places = static_cast<double>(some.rows() / 3 * some.cols());
+  const Index some_vertices = some.rows() / 3;
+  const auto some_places = static_cast<double>(some_vertices * some.cols());
   const double left = kToleratedAngle * kToleratedAngle * places - squares;
   const double rms = left > 0 && some_places > 0 ? std::sqrt(left / some_places) : 0;
   append(principal_shapes_of(some, rms, kToleratedAngle, max_targets, kNormalUnit), vertices,

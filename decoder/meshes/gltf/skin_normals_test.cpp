@@ -155,7 +155,8 @@ struct Noisy {
     for (std::uint32_t v = 0; v < kRow * kRow; ++v) {
       skeleton.influences.push_back({{0, 16}});
       const double x = v % kRow + 0.5 * any();
-      const double y = v / kRow + 0.5 * any();
+      const std::uint32_t row = v / kRow;
+      const double y = row + 0.5 * any();
       for (const double c : {x, y, std::sin(x) + 0.3 * any()}) {
         rest.push_back(static_cast<float>(c));
       }

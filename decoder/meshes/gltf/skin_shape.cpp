@@ -173,7 +173,7 @@ Eigen::MatrixXf missing_moves(const SkinInfluences& influences, std::span<const 
 SkinError skin_error(const SkinInfluences& influences, std::span<const JointMaps> maps,
                      std::span<const float> rest, const PrincipalShapes& shapes,
                      ShownFrames frames) {
-  const auto num_vertices = static_cast<double>(rest.size() / 3);
+  const auto num_vertices = static_cast<double>(rest.size()) / 3.0;
   std::vector<FrameError> errors(frames.size());
   for_each(frames.size(), [&](std::size_t f) {
     Eigen::VectorXf shape =

@@ -68,6 +68,7 @@ std::vector<Vec3d> sector_normals(const NormalTask& task, std::span<const float>
 
 Smoothing smoothing_at_rest(const NormalTask& task, const std::vector<Vec3d>& at_rest) {
   std::vector<Point> wanted;
+  wanted.reserve(at_rest.size());
   for (const Vec3d& n : at_rest) {
     wanted.push_back(octahedron_point(is_zero(n) ? Vec3d{0.0, 0.0, 1.0} : n, kSmoothingBits));
   }
@@ -194,8 +195,8 @@ class NormalPlanner {
   }
 
   std::vector<bool> followers(const ComparedNormals& compared) const {
-    const std::vector<bool> all(count(), true);
-    const std::vector<bool> none(count(), false);
+    std::vector<bool> all(count(), true);
+    std::vector<bool> none(count(), false);
     if (settings_.normals == NormalChoice::kSmoothing) return all;
     if (!settings_.from_positions) {
       if (is_exact_) return none;

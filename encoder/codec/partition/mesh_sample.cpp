@@ -48,6 +48,7 @@ void grow(const Graph& graph, std::uint32_t first, std::size_t max,
 std::vector<std::uint8_t> mark_regions(const Graph& graph, std::uint32_t max) {
   const std::uint32_t num_vertices = graph.num_vertices();
   std::vector<std::uint8_t> is_in(num_vertices, 0);
+  if (max == num_vertices) return std::vector<std::uint8_t>(num_vertices, 1);
   for (std::uint32_t region = 0; region < kRegions; ++region) {
     const std::uint32_t part = max * (region + 1) / kRegions - max * region / kRegions;
     auto start = static_cast<std::uint32_t>((2 * std::uint64_t{region} + 1) * num_vertices /

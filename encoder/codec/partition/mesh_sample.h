@@ -25,8 +25,7 @@ struct MeshSample {
 //
 //   frames     of the whole mesh; their first is read
 //   triangles  of the whole mesh; none: a point cloud
-//   max        maximum number of vertices, 1 or more; a mesh that is not larger is taken whole,
-//              unless it has several components
+//   max        maximum number of vertices, 1 or more; a mesh that is not larger is taken whole
 MeshSample sample_mesh(const SpanFrames& frames, std::span<const Triangle> triangles,
                        std::uint32_t max);
 

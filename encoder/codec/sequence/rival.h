@@ -8,8 +8,13 @@ namespace rlpc {
 
 class Rival {
  public:
-  // Keeps references to both. best: the whole sequence, with metrics of its frames.
-  Rival(const Target& target, const BatchTrial& best) : target_(target), best_(best) {}
+  // Keeps references to both. best: the whole sequence, with metrics of its frames. contested:
+  // whether it was encoded as several kinds of GOF.
+  Rival(const Target& target, const BatchTrial& best, bool contested)
+      : target_(target), best_(best), contested_(contested) {}
+
+  // Whether its kind of GOF was clearly the best.
+  bool is_uncontested() const { return !contested_; }
 
   // Whether a search cannot be expected to find a smaller result at the target, after this
   // encoding of the sequence: at equal error, it takes more bytes than the best result by a
@@ -19,6 +24,7 @@ class Rival {
  private:
   const Target& target_;
   const BatchTrial& best_;
+  bool contested_;
 };
 
 }  // namespace rlpc

@@ -40,10 +40,10 @@ std::uint32_t spans_together(const SequenceHeader& header, std::uint32_t longest
 
 // Searches of contained profiles that take some tenths of a second are never given up: where
 // streams have few bytes, sizes and errors jump from one step to the next.
-bool may_give_up(const SequenceHeader& header) {
+bool may_give_up(FrameSource& source) {
   constexpr std::uint64_t kSmall = std::uint64_t{1}
                                    << 15;  // fixed: time; vertices of all frames
-  return std::uint64_t{header.num_vertices} * header.num_frames > kSmall;
+  return std::uint64_t{source.num_vertices()} * source.num_frames() > kSmall;
 }
 
 // Returns the decoded frames that attributes refer to.
@@ -370,9 +370,14 @@ std::uint64_t SequenceEncoder::bytes_of(const TargetResult& result) const {
 }
 
 InputResult<TargetResult> SequenceEncoder::find(const Rival* rival) {
+  if (!may_give_up(source_)) rival = nullptr;
+  if (rival != nullptr && rival->is_uncontested()) {
+    TargetResult none;
+    none.given_up = true;
+    return none;
+  }
   if (auto error = prepare()) return *error;
   const ThreadPool::Use use(*threads_);
-  if (!may_give_up(coding_->header())) rival = nullptr;
   auto best = search(rival);
   if (best && !best->given_up && settings_.target.kind == Target::kBpvf) {
     if (auto error = search_on_finer_grid(*best)) return *error;

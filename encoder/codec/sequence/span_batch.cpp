@@ -81,6 +81,11 @@ bool SpanBatch::uses_earlier_rigs() const {
                      [](const Span& span) { return span.vertices == Vertices::kEarlier; });
 }
 
+bool SpanBatch::is_contested() const {
+  return std::any_of(spans_.begin(), spans_.end(),
+                     [](const Span& span) { return span.coder && span.coder->is_contested(); });
+}
+
 bool SpanBatch::use_own_rigs() {
   const bool changed = uses_earlier_rigs();
   for (Span& span : spans_) span.vertices = Vertices::kOwn;

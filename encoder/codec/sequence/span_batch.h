@@ -72,6 +72,8 @@ class SpanBatch {
   void choose_again();
   // Whether some spans use shared rigs of earlier ones.
   bool uses_earlier_rigs() const;
+  // Whether any span has been encoded as several kinds of GOF, as none was clearly the best.
+  bool is_contested() const;
   // Gives each span a shared rig of its own from now on. Returns false if all had one before.
   bool use_own_rigs();
   // Receives the fraction done of the analyses and the encoding that follows, from time to

@@ -147,6 +147,7 @@ InputResult<TargetResult> reach_target(const TargetTask& task, SpanBatch& batch)
     search_again(from_there);
   }
   if (is_missed() && batch.use_last_resort()) search_again(task);
+  if (best) best->contested = batch.is_contested();
   return best;
 }
 

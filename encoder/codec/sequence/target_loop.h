@@ -36,7 +36,8 @@ struct TargetResult {
   double measured = 0.0;  // its error or rate, in the unit of the target
   bool met = false;       // it does not exceed the target
   std::uint32_t trials = 0;
-  bool given_up = false;  // the search was not expected to beat the rival
+  bool contested = false;  // SpanBatch::is_contested()
+  bool given_up = false;   // the search was not expected to beat the rival
 };
 
 // Runs the search. If it misses the target, searches again without shared rigs of earlier

@@ -19,10 +19,6 @@ class KindEncoder {
   virtual ~KindEncoder() = default;
   // Makes a coder, which keeps a reference to the frames.
   virtual std::unique_ptr<SpanCoder> make_coder(const SpanFrames& frames) const = 0;
-  // Whether this kind may code the frames at less cost than the likeliest kind.
-  //
-  //   components  number that the likeliest kind is expected to need
-  virtual bool may_win(const SpanFrames& frames, std::uint32_t components) const = 0;
   // Encodes the frames with the shared rig of an earlier span. None: this costs at least
   // `most`, or is expected to, or the kind has no rigs.
   virtual std::optional<EncodedSpan> encode_with(const KeptRig& /*rig*/,

@@ -10,6 +10,14 @@
 namespace rlpc {
 namespace {
 
+// Returns the bits of the shared rig of a span; 0: none.
+double bits_of_rig(const EncodedSpan& encoded) {
+  if (encoded.units.empty() || encoded.units.front().type != UnitType::kRig) return 0.0;
+  const auto gof = std::find_if(encoded.units.begin(), encoded.units.end(),
+                                [](const auto& unit) { return unit.type == UnitType::kGof; });
+  return bits_of(std::span(encoded.units.begin(), gof));
+}
+
 // Returns what a coder that took `cost` at a step takes at about another squared error.
 SpanCost cost_at_error(SpanCoder& coder, const SpanFrames& frames, double step,
                        const SpanCost& cost, double squared_error) {
@@ -24,6 +32,8 @@ SpanCost cost_at_error(SpanCoder& coder, const SpanFrames& frames, double step,
     scaled *= std::sqrt(ratio);
     found = cost_of(coder.encode(scaled, scaled), frames);
   }
+  // A kind that cannot err as much gains nothing by that.
+  found.squared_error = std::max(found.squared_error, squared_error);
   return found;
 }
 
@@ -55,19 +65,14 @@ EncodedSpan KindSearch::encode(double step, double analysis_step) {
 
 EncodedSpan KindSearch::compare(double step, double analysis_step) {
   is_compared_ = true;
-  coders_.front()->analyse(analysis_step);
-  const std::uint32_t components = coders_.front()->expected_components();
-  std::vector<std::size_t> others;
-  for (std::size_t k = 1; k < kinds_.size(); ++k) {
-    if (preset_ == Preset::kSlow || kinds_[k]->may_win(frames_, components))
-      others.push_back(k);
-  }
   EncodedSpan best = coders_.front()->encode(step, analysis_step);
-  if (others.empty()) return best;
   SpanCost best_cost = cost_of(best, frames_);
-  for (const std::size_t k : others) {
+  // At least one more span uses its rig, so that it counts half.
+  if (frames_.has_followers) best_cost.bits -= 0.5 * bits_of_rig(best);
+  for (std::size_t k = 1; k < kinds_.size(); ++k) {
     std::unique_ptr<SpanCoder> coder = kinds_[k]->make_coder(frames_);
-    if (coder->is_out_of_reach(step, best_cost) && preset_ != Preset::kSlow) continue;
+    if (preset_ != Preset::kSlow && coder->is_out_of_reach(step, best_cost)) continue;
+    is_contested_ = true;
     EncodedSpan encoded = coder->encode(step, analysis_step);
     const SpanCost cost = cost_of(encoded, frames_);
     const SpanCost at_equal_error =

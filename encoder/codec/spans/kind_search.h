@@ -26,6 +26,7 @@ class KindSearch : public SpanCoder {
   bool needs_frames(double step, double analysis_step) const override;
   EncodedSpan encode(double step, double analysis_step) override;
   void release_analysis() override;
+  bool is_contested() const override { return is_contested_; }
 
  private:
   bool must_compare() const { return kinds_.size() > 1 && !is_compared_; }
@@ -37,6 +38,7 @@ class KindSearch : public SpanCoder {
   std::vector<std::unique_ptr<SpanCoder>> coders_;  // [kind]; null: not chosen yet
   std::size_t chosen_ = 0;
   bool is_compared_ = false;
+  bool is_contested_ = false;
 };
 
 }  // namespace rlpc

@@ -13,7 +13,6 @@ namespace {
 
 // Counts the calls of a kind and its coders.
 struct Calls {
-  int questions = 0;
   int encodings = 0;
   int released = 0;
 };
@@ -29,7 +28,6 @@ struct Answers {
 class FakeCoder : public SpanCoder {
  public:
   FakeCoder(const Answers& answers, Calls& calls) : answers_(answers), calls_(calls) {}
-  std::uint32_t expected_components() const override { return 10; }
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return false; }
   EncodedSpan encode(double /*step*/, double /*analysis_step*/) override {
     ++calls_.encodings;
@@ -54,10 +52,6 @@ class FakeKind : public KindEncoder {
   std::unique_ptr<SpanCoder> make_coder(const SpanFrames& /*frames*/) const override {
     return std::make_unique<FakeCoder>(answers_, calls_);
   }
-  bool may_win(const SpanFrames& /*frames*/, std::uint32_t components) const override {
-    ++calls_.questions;
-    return components >= answers_.min;
-  }
 
  private:
   Answers answers_;
@@ -80,9 +74,9 @@ struct Fixture {
 
 TEST(KindSearch, TakesTheCheapestKind) {
   Fixture f;
-  f.add({.bytes = 100, .min = 0});
-  f.add({.bytes = 80, .min = 10});
-  f.add({.bytes = 90, .min = 10});
+  f.add({.bytes = 100});
+  f.add({.bytes = 80});
+  f.add({.bytes = 90});
   KindSearch search(f.kinds, f.frames, Preset::kMedium);
   EXPECT_EQ(Fixture::bytes(search, 10.0), 80U);
   // At a nearby step the choice is kept.
@@ -92,31 +86,9 @@ TEST(KindSearch, TakesTheCheapestKind) {
   EXPECT_EQ(f.calls[2]->encodings, 1);
 }
 
-TEST(KindSearch, EncodesOnlyKindsThatMayWin) {
-  Fixture f;
-  f.add({.bytes = 100, .min = 0});
-  f.add({.bytes = 50, .min = 11});
-  f.add({.bytes = 60, .min = 10});
-  KindSearch search(f.kinds, f.frames, Preset::kMedium);
-  EXPECT_EQ(Fixture::bytes(search, 10.0), 60U);
-  EXPECT_EQ(f.calls[1]->questions, 1);
-  EXPECT_EQ(f.calls[1]->encodings, 0);
-  EXPECT_EQ(f.calls[2]->questions, 1);
-  EXPECT_EQ(f.calls[2]->encodings, 1);
-}
-
-TEST(KindSearch, SlowPresetEncodesAllKinds) {
-  Fixture f;
-  f.add({.bytes = 100, .min = 0});
-  f.add({.bytes = 50, .min = 99});
-  KindSearch search(f.kinds, f.frames, Preset::kSlow);
-  EXPECT_EQ(Fixture::bytes(search, 10.0), 50U);
-  EXPECT_EQ(f.calls[1]->questions, 0);
-}
-
 TEST(KindSearch, SkipsKindsWhoseSampleLosesToTheBest) {
   Fixture f;
-  f.add({.bytes = 100, .min = 0});
+  f.add({.bytes = 100});
   f.add({.bytes = 80, .expected = 99});
   f.add({.bytes = 70, .expected = 90});  // less than the first kind, more than the second
   KindSearch search(f.kinds, f.frames, Preset::kMedium);
@@ -138,21 +110,20 @@ TEST(KindSearch, ComparesAtEqualError) {
 
 TEST(KindSearch, ComparesOnce) {
   Fixture f;
-  f.add({.bytes = 100, .min = 0});
-  f.add({.bytes = 50, .min = 9});
+  f.add({.bytes = 100});
+  f.add({.bytes = 50});
   KindSearch search(f.kinds, f.frames, Preset::kMedium);
   EXPECT_TRUE(search.needs_frames(10.0, 10.0));
   Fixture::bytes(search, 10.0);
   EXPECT_FALSE(search.needs_frames(20.0, 20.0));
   EXPECT_EQ(Fixture::bytes(search, 20.0), 50U);
   EXPECT_EQ(f.calls[0]->encodings, 1);
-  EXPECT_EQ(f.calls[1]->questions, 1);
 }
 
 TEST(KindSearch, ReleasesTheAnalysesOfItsCoders) {
   Fixture f;
-  f.add({.bytes = 100, .min = 0});
-  f.add({.bytes = 80, .min = 10});
+  f.add({.bytes = 100});
+  f.add({.bytes = 80});
   KindSearch search(f.kinds, f.frames, Preset::kMedium);
   search.release_analysis();
   EXPECT_EQ(f.calls[0]->released, 1);

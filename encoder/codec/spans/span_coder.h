@@ -93,9 +93,6 @@ class SpanCoder {
   // Estimates the squared error of encode(step) from the last analysis. The ratio of actual to
   // estimated error is almost independent of the step. None: no estimate is available.
   virtual std::optional<double> expected_error(double /*step*/) const { return std::nullopt; }
-  // Returns the number of components, or trajectories, that encode() is expected to use, from
-  // the last analysis.
-  virtual std::uint32_t expected_components() const { return 0; }
   // Whether encode() would read the frames; if not, the caller may have freed them.
   virtual bool needs_frames(double step, double analysis_step) const = 0;
   // Encodes the span. step: quantiser step, in grid steps. analysis_step: the nearby step to
@@ -105,6 +102,8 @@ class SpanCoder {
   // Whether encode(step) can be expected to cost clearly more than another encoding of the same
   // span, at equal error. False: it may cost less, or finding out takes as long as encode().
   virtual bool is_out_of_reach(double /*step*/, const SpanCost& /*rival*/) { return false; }
+  // Whether several kinds of GOF have been encoded, as none was clearly the best.
+  virtual bool is_contested() const { return false; }
 };
 
 }  // namespace rlpc

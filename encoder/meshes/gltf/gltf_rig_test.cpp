@@ -105,7 +105,7 @@ class RandomScene {
   }
   // Scales are usual, uneven, mirroring, tiny or zero.
   std::vector<float> scale() {
-    const std::vector<float> even(3, 0.01F + std::abs(number()));
+    std::vector<float> even(3, 0.01F + std::abs(number()));
     switch (below(8)) {
       case 0:
         return numbers(3);

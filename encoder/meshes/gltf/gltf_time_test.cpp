@@ -104,6 +104,7 @@ class GltfTimeTest : public GltfFilesTest {
 
 std::vector<float> frames_at(double rate, int count, int first = 0) {
   std::vector<float> times;
+  times.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) times.push_back(static_cast<float>((first + k) / rate));
   return times;
 }

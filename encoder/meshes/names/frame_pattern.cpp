@@ -109,6 +109,7 @@ InputResult<FrameFiles> select_any_number(const fs::path& pattern, const NameFor
   const auto reading = read_numbers(form, found);
   if (reading->has_twice) return NameProblem(found, pattern.string()).twice(*reading);
   std::vector<std::string> paths;
+  paths.reserve(found.size());
   for (const std::string& name : found) {
     paths.push_back((pattern.parent_path() / name).string());
   }
@@ -160,6 +161,7 @@ InputResult<FrameFiles> select_whole_numbers(const fs::path& pattern,
   auto files = without_gaps(pattern, numbered, found);
   if (!files) return files;
   std::vector<std::string> selected;
+  selected.reserve(found.size());
   for (const NumberedFile& file : found) selected.push_back(file.name);
   note_left_out(pattern, form, selected, names, *files);
   return files;

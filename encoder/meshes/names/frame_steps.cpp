@@ -29,6 +29,7 @@ std::vector<double> rounding_of(const Reading& reading, const std::vector<double
     max = it->second = std::max(max, it->second);
   }
   std::vector<double> rounding;
+  rounding.reserve(values.size());
   for (const double value : values) {
     rounding.push_back(
         reading.has_fractions

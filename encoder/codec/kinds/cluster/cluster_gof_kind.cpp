@@ -14,11 +14,6 @@
 namespace rlpc {
 namespace {
 
-// tuned (off: 0): Without a sample, clusters are tried only where trajectories number at least
-// this fraction of their maximum. Below, one set of components for all vertices is usually the
-// better basis.
-constexpr double kHighRank = 0.4;
-
 // tuned (off: 0): Estimates above the rival by less than this factor may be wrong.
 constexpr double kMargin = 1.15;
 
@@ -53,9 +48,7 @@ class ClusterSpanCoder : public SpanCoder {
  private:
   bool uses_sample() const {
     const BaselineTools& tools = coding_.settings().baseline;
-    return tools.clusters == 0 && tools.frame_mode == FrameMode::kAuto &&
-           ClusterSample::saves_time(coding_.frames().num_vertices,
-                                     coding_.frames().num_frames);
+    return tools.clusters == 0 && tools.frame_mode == FrameMode::kAuto;
   }
 
   ClusterGofCoding coding_;
@@ -75,14 +68,6 @@ class ClusterGofKind : public KindEncoder {
           frames, [this](const SpanFrames& gof_frames) { return make_coder(gof_frames); });
     }
     return std::make_unique<ClusterSpanCoder>(ClusterGofCoding(mesh_, settings_, frames));
-  }
-
-  bool may_win(const SpanFrames& frames, std::uint32_t components) const override {
-    if (ClusterSample::saves_time(frames.num_vertices, frames.num_frames / frames.num_gofs)) {
-      return true;
-    }
-    return settings_.preset != Preset::kFast && settings_.target.kind != Target::kMaxError &&
-           components >= kHighRank * std::min(frames.num_vertices, 3 * frames.num_frames);
   }
 
  private:

@@ -27,13 +27,6 @@ class ClusterSearch {
       : coding_(coding), step_(step), maker_(coding.cluster_maker()) {}
 
   FoundClusters run() {
-    const BaselineTools& tools = coding_.settings().baseline;
-    const bool is_free = tools.clusters == 0 && tools.frame_mode == FrameMode::kAuto;
-    // Next to skinned GOFs, which are usually better, only the extremes are tried.
-    if (is_free && coding_.settings().preset == Preset::kMedium &&
-        coding_.settings().profile != Profile::kBaseline) {
-      return better_extreme();
-    }
     if (coding_.settings().preset != Preset::kFast && has_variants(coding_.settings())) {
       FoundVariant found = search_variants(coding_, step_, choices_of_paper());
       return {found.choice, std::move(found.clustering)};
@@ -56,20 +49,6 @@ class ClusterSearch {
   }
 
  private:
-  FoundClusters better_extreme() {
-    std::array<FoundClusters, 2> found;
-    found[0].choice = {usual_clusters(coding_.frames().num_vertices), false};
-    found[1].choice = {1, true};
-    for (FoundClusters& of : found)
-      of.clustering = coding_.cluster(*maker_, of.choice.clusters);
-    std::array<double, 2> costs{};
-    for_each(2, [&](std::size_t i) {
-      found[i].analysis = coding_.analyse(step_, found[i].choice.world, found[i].clustering);
-      costs[i] = cost(coding_.encode(step_, *found[i].analysis));
-    });
-    return std::move(found[costs[1] < costs[0] ? 1 : 0]);
-  }
-
   double cost(const EncodedSpan& encoded) const {
     const double error = squared_error(coding_.frames(), encoded.frame);
     const double bits = 8.0 * static_cast<double>(encoded.units[0].payload.size());

@@ -13,15 +13,16 @@ namespace {
 
 // tuned: Number of positions in all frames of a sample.
 constexpr std::uint32_t kPositions = 150000;
-constexpr std::uint32_t kMinVertices = 600;   // fixed: several clusters
+constexpr std::uint32_t kMinVertices = 300;   // fixed: several clusters
 constexpr std::uint32_t kMaxVertices = 1500;  // fixed: time
 
 constexpr std::size_t kNumCounts = 10;      // fixed: up to 32 clusters of the sample
 constexpr std::size_t kFirstLocal = 4;      // fixed: six clusters, two for each region
 constexpr std::uint32_t kSeedVertices = 3;  // fixed: number per cluster
 
-std::uint32_t vertices_of_sample(std::uint32_t num_frames) {
-  return std::clamp(kPositions / num_frames, kMinVertices, kMaxVertices);
+std::uint32_t vertices_of_sample(std::uint32_t num_vertices, std::uint32_t num_frames) {
+  const std::uint32_t max = std::clamp(kPositions / num_frames, kMinVertices, kMaxVertices);
+  return std::min(max, std::max(num_vertices / 2, kMinVertices));
 }
 
 SequenceHeader header_of(SequenceHeader header, const MeshSample& sample) {
@@ -64,17 +65,13 @@ struct ClusterSample::Search {
 ClusterSample::ClusterSample(const SequenceMesh& mesh, const EncoderSettings& settings,
                              const SpanFrames& frames)
     : num_vertices_(frames.num_vertices),
-      sample_(sample_mesh(frames, mesh.triangles, vertices_of_sample(frames.num_frames))),
+      sample_(sample_mesh(frames, mesh.triangles,
+                          vertices_of_sample(num_vertices_, frames.num_frames))),
       frames_(sample_.frames_of(frames, {0, frames.num_frames})),
       header_(header_of(mesh.header, sample_)),
       topology_(make_topology(frames_.num_vertices, sample_.triangles)),
       mesh_{header_, topology_, sample_.triangles},
       coding_(mesh_, settings, frames_) {}
-
-bool ClusterSample::saves_time(std::uint32_t num_vertices, std::uint32_t num_frames) {
-  constexpr std::uint32_t kTwice = 2;  // fixed: a search takes several encodings
-  return num_vertices >= kTwice * vertices_of_sample(num_frames);
-}
 
 ClusterSample::Estimate ClusterSample::cheapest(double step) const {
   Search search{coding_, step};

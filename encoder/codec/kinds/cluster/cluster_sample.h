@@ -24,9 +24,6 @@ class ClusterSample {
   ClusterSample(const ClusterSample&) = delete;
   ClusterSample& operator=(const ClusterSample&) = delete;
 
-  // Whether the sample is so small a part of a GOF that encoding it saves time.
-  static bool saves_time(std::uint32_t num_vertices, std::uint32_t num_frames);
-
   struct Estimate {
     ClusterChoice choice;  // of the whole mesh: clusters as large as the best of the sample
     SpanCost cost;         // of the whole mesh

@@ -15,10 +15,6 @@
 namespace rlpc {
 namespace {
 
-// tuned (off: 1): Without a sample, inter GOFs are tried where trajectories number at least
-// this fraction of their maximum. Below, trajectories of all frames are the better basis.
-constexpr double kManyTrajectories = 0.3;
-
 // Choices at a step hold for all steps within kAnalysisServes.
 class InterSpanCoder : public SpanCoder {
  public:
@@ -36,7 +32,7 @@ class InterSpanCoder : public SpanCoder {
 
  private:
   void choose(double step, const StartTrial& start);
-  InterSample* sample();
+  InterSample& sample();
 
   const SequenceMesh& mesh_;
   const EncoderSettings& settings_;
@@ -61,18 +57,18 @@ EncodedSpan InterSpanCoder::encode(double step, double /*analysis_step*/) {
   return encoded;
 }
 
-// Chooses the number of patches first; patterns are then compared with it. If there is a
-// sample, it chooses the pattern, and some frames the number of patches.
+// Chooses the number of patches first; patterns are then compared with it. If that takes long,
+// a sample chooses the pattern, and some frames the number of patches.
 void InterSpanCoder::choose(double step, const StartTrial& start) {
   const bool is_open_ended = mesh_.header.open_end_flag;
   const std::uint32_t num_frames = frames_.num_frames;
   const auto numbers = patches_of(settings_, is_open_ended, num_frames);
   auto patterns = patterns_of(settings_, is_open_ended, num_frames);
   std::uint32_t patches = numbers.front();
-  if (InterSample* const by = sample(); by && settings_.preset != Preset::kSlow) {
+  if (settings_.preset != Preset::kSlow && InterSample::saves_time(frames_.num_vertices)) {
     const auto compared = choices_of_patches({patterns.front()}, numbers);
     patches = cheapest_at_start(compared, num_frames, start).num_patches;
-    patterns = {by->cheapest_pattern(step)};
+    if (patterns.size() > 1) patterns = {sample().cheapest_pattern(step)};
   } else if (numbers.size() > 1) {
     const auto compared = choices_of_patches(patterns, numbers);
     patches = cheapest(compared, num_frames, start)->choice().num_patches;
@@ -82,15 +78,13 @@ void InterSpanCoder::choose(double step, const StartTrial& start) {
 }
 
 bool InterSpanCoder::is_out_of_reach(double step, const SpanCost& rival) {
-  return sample() && sample()->is_out_of_reach(step, rival);
+  return sample().is_out_of_reach(step, rival);
 }
 
-// Returns the sample, which is made once; null if it would save no time.
-InterSample* InterSpanCoder::sample() {
-  if (!sample_ && InterSample::saves_time(frames_.num_vertices, frames_.num_frames)) {
-    sample_ = std::make_unique<InterSample>(mesh_, settings_, frames_);
-  }
-  return sample_.get();
+// Returns the sample, which is made once.
+InterSample& InterSpanCoder::sample() {
+  if (!sample_) sample_ = std::make_unique<InterSample>(mesh_, settings_, frames_);
+  return *sample_;
 }
 
 class InterGofKind : public KindEncoder {
@@ -105,12 +99,6 @@ class InterGofKind : public KindEncoder {
     }
     return std::make_unique<InterSpanCoder>(mesh_, meshes_[Prediction::kLayers], settings_,
                                             frames);
-  }
-
-  bool may_win(const SpanFrames& frames, std::uint32_t components) const override {
-    return InterSample::saves_time(frames.num_vertices, frames.num_frames / frames.num_gofs) ||
-           components >=
-               kManyTrajectories * std::min(frames.num_vertices, 3 * frames.num_frames);
   }
 
  private:

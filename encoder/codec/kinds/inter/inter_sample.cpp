@@ -15,6 +15,7 @@ namespace {
 constexpr std::uint32_t kWindow = 65;
 // tuned: Vertices of a sample with kWindow frames; more if there are fewer frames.
 constexpr std::uint32_t kVertices = 1800;
+constexpr std::uint32_t kMinVertices = 300;  // fixed: regions with an inside
 // tuned: Maximum number of vertices of a sample.
 constexpr std::uint32_t kMaxVertices = 2500;
 
@@ -26,8 +27,9 @@ constexpr double kOthers = 1.25;
 
 std::uint32_t window_of(std::uint32_t num_frames) { return std::min(num_frames, kWindow); }
 
-std::uint32_t vertices_of_sample(std::uint32_t num_frames) {
-  return std::min(kVertices * kWindow / window_of(num_frames), kMaxVertices);
+std::uint32_t vertices_of_sample(std::uint32_t num_vertices, std::uint32_t num_frames) {
+  const std::uint32_t max = std::min(kVertices * kWindow / window_of(num_frames), kMaxVertices);
+  return std::min(max, std::max(num_vertices / 2, kMinVertices));
 }
 
 // Returns settings that code the first frame of a sample by the usual weights.
@@ -45,7 +47,8 @@ InterSample::InterSample(const SequenceMesh& mesh, const EncoderSettings& settin
     : num_vertices_(frames.num_vertices),
       num_frames_(frames.num_frames),
       window_{(num_frames_ - window_of(num_frames_)) / 2, window_of(num_frames_)},
-      sample_(sample_mesh(frames, mesh.triangles, vertices_of_sample(num_frames_))),
+      sample_(
+          sample_mesh(frames, mesh.triangles, vertices_of_sample(num_vertices_, num_frames_))),
       frames_(sample_.frames_of(frames, window_)),
       patterns_(patterns_of(settings, mesh.header.open_end_flag, frames.num_frames)),
       patches_(patches_of(settings, mesh.header.open_end_flag, frames.num_frames)),
@@ -55,10 +58,8 @@ InterSample::InterSample(const SequenceMesh& mesh, const EncoderSettings& settin
       mesh_{mesh.header, topology_, sample_.triangles},
       maker_(mesh_, meshes_[Prediction::kLayers], settings_, frames_) {}
 
-bool InterSample::saves_time(std::uint32_t num_vertices, std::uint32_t num_frames) {
-  constexpr std::size_t kTwice = 2;  // fixed: a search takes several encodings
-  return std::size_t{num_vertices} * num_frames >=
-         kTwice * vertices_of_sample(num_frames) * window_of(num_frames);
+bool InterSample::saves_time(std::uint32_t num_vertices) {
+  return num_vertices > 2 * kMinVertices;
 }
 
 // Returns the expected cost of the whole GOF.

@@ -28,8 +28,8 @@ class InterSample {
   InterSample(const InterSample&) = delete;
   InterSample& operator=(const InterSample&) = delete;
 
-  // Whether the sample is so small a part of a GOF that encoding it saves time.
-  static bool saves_time(std::uint32_t num_vertices, std::uint32_t num_frames);
+  // Whether the sample is a small part of the mesh.
+  static bool saves_time(std::uint32_t num_vertices);
   // Whether the whole GOF takes clearly more bits than the rival, at equal error. step: as in
   // SpanCoder::encode().
   bool is_out_of_reach(double step, const SpanCost& rival);

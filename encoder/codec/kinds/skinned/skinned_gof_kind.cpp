@@ -24,9 +24,6 @@ class SkinnedGofKind : public KindEncoder {
   }
 
   // Never called: if there are several kinds, this one comes first and is always encoded.
-  bool may_win(const SpanFrames& /*frames*/, std::uint32_t /*components*/) const override {
-    return false;
-  }
 
  private:
   SkinnedContext context_;

@@ -131,10 +131,6 @@ std::optional<double> SkinnedSpanCoder::expected_error(double step) const {
   return expected_squared_error(*analysis_.last(), step);
 }
 
-std::uint32_t SkinnedSpanCoder::expected_components() const {
-  return draft_ ? static_cast<std::uint32_t>(draft_->num_trajectories) : 0;
-}
-
 EncodedSpan SkinnedSpanCoder::encode(double step, double analysis_step) {
   if (!choice_) choose(analysis_step);
   if (!follows_step()) analysis_for(analysis_step);

@@ -26,7 +26,6 @@ class SkinnedSpanCoder : public SpanCoder {
   void set_progress(const Progress& progress) override { bones_.set_progress(progress); }
   void analyse(double analysis_step) override;
   std::optional<double> expected_error(double step) const override;
-  std::uint32_t expected_components() const override;
   bool needs_frames(double step, double analysis_step) const override;
   EncodedSpan encode(double step, double analysis_step) override;
   void release_analysis() override;

@@ -194,6 +194,7 @@ TEST(SkinnedSpanCoder, IsDeterministic) {
 // moves it.
 struct SegmentedTube {
   static constexpr std::uint32_t kSegments = 8;
+  static constexpr std::uint32_t kRingsOfSegment = kRings / kSegments;
   static constexpr std::uint32_t kFrames = 180;
 
   SegmentedTube() : animation(still, kFrames) {
@@ -202,14 +203,14 @@ struct SegmentedTube {
     for (std::uint32_t b = 0; b < kSegments; ++b) {
       RigBone& bone = rig->bones[b];
       bone.parent = static_cast<std::int32_t>(b) - 1;
-      bone.pivot = {1000.0 * (kRings / kSegments) * b, 0.0, 0.0};
+      bone.pivot = {1000.0 * kRingsOfSegment * b, 0.0, 0.0};
       for (std::uint32_t f = 0; f < kFrames; ++f) bone.poses.push_back(pose_of(*rig, b, f));
     }
     const SpanFrames& frames = animation.frames;
     for (std::uint32_t v = 0; v < kVertices; ++v) {
       const double* rest = frames.at(0, v);
       rig->rest.push_back({rest[0], rest[1], rest[2]});
-      rig->weights.push_back({{v / kSides / (kRings / kSegments), 1.0}});
+      rig->weights.push_back({{v / kSides / kRingsOfSegment, 1.0}});
     }
     for (std::uint32_t f = 0; f < kFrames; ++f) {
       for (std::uint32_t v = 0; v < kVertices; ++v) {

@@ -225,6 +225,7 @@ InputResult<std::uint32_t> choose_longest_gof(FrameSource& source, std::uint32_t
     lengths.push_back(std::min(2 * lengths.back(), longest));
   }
   std::vector<double> length_cost;
+  length_cost.reserve(lengths.size());
   for (const std::uint32_t length : lengths) {
     length_cost.push_back(costs.equal_cost(num_frames, length));
   }

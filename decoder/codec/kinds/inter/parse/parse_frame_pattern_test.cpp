@@ -28,7 +28,7 @@ Bytes bytes_of(const FramePatternRecipe& recipe) {
 FramePattern parse_legal(const FramePatternRecipe& recipe) {
   const Bytes bytes = bytes_of(recipe);
   BitReader r(bytes, kPayloadBitPos);
-  const FramePattern pattern = parse_frame_pattern(r);
+  FramePattern pattern = parse_frame_pattern(r);
   EXPECT_EQ(r.u(10, "mark"), kMark);
   EXPECT_FALSE(r.error());
   return pattern;

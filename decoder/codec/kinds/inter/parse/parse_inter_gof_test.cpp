@@ -44,6 +44,7 @@ const LegalGof kDyadic{
      {0x5E},
      {0x24, 0xA4, 0xE5, 0xA7, 0x98, 0x10, 0x55, 0x73}},
     {15, 1, 5, 1, 5, 2, 5, 1, 1},
+    // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): the lines of one unit
     {"first_frame 0\nnum_gof_frames_minus1 4\ngof_kind 3\nframe_pattern_idc 2\n"
      "pattern_period_log2 2\ntemporal_layers_minus1 1\nexact_flag 0\n"
      "frame_step_minus1 20 31 65535\ndamping_log2 6\nouter_weight 3\nouter_scale 11\n"

@@ -139,7 +139,7 @@ CodedTrajectories code_trajectories(const OrderedMesh& mesh, const SkinnedAnalys
       for (std::size_t g = 0; g < coded.gofs.size(); ++g) {
         coded.gofs[g].trajectories = std::move(temporal.gof_trajectories[g]);
       }
-      if (settings.draft) coded.values = std::move(spatial.values);
+      if (shared == nullptr) coded.values = std::move(spatial.values);
       return {std::move(spatial.residual), std::move(cuts)};
     }
     limits.min_eighths =

@@ -27,7 +27,8 @@ double expected_squared_error(const SkinnedAnalysis& analysis, double step);
 struct CodedSpan {
   SharedRig rig;
   std::vector<SkinnedGof> gofs;  // bones and trajectories with their motion, nothing else
-  // Spatial values of a draft, as decoded, [num_vertices][trajectory].
+  // Spatial values of the trajectories, as decoded, [num_vertices][trajectory]; empty if there
+  // are none, or those of a shared rig.
   std::vector<std::int32_t> values = {};
 };
 

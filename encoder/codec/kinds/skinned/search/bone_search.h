@@ -61,9 +61,9 @@ class BoneSearch {
     std::vector<Bones> bones = {};  // the first: a single bone
   };
   struct Candidate {
-    std::size_t growth;
-    std::size_t bones;      // index
-    double expected;        // cost
+    std::size_t growth = 0;
+    std::size_t bones = 0;  // index
+    double expected = 0.0;  // cost
     bool is_likely = true;  // judged by that cost
   };
 
