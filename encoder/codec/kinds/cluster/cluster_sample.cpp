@@ -12,7 +12,7 @@ namespace rlpc {
 namespace {
 
 // tuned: Number of positions in all frames of a sample.
-constexpr std::uint32_t kPositions = 150000;
+constexpr std::uint32_t kPositions = 60000;
 constexpr std::uint32_t kMinVertices = 300;   // fixed: several clusters
 constexpr std::uint32_t kMaxVertices = 1500;  // fixed: time
 
