@@ -126,7 +126,7 @@ class Messages(ToolsTest):
     def test_advice_on_missed_targets_helps(self):
         clip = [INPUTS / "robot_arm.obj", "--points", INPUTS / "robot_arm.pc2", "--preset", "fast",
                 "-o", self.path("a.rlpc")]
-        for options in (["--kg", 1e-5], ["--max-error", 1e-7], ["--bpvf", 0.05],
+        for options in (["--kg", 1e-5], ["--max-error", 1e-7], ["--bpvf", 0.02],
                         ["--kg", 0.01, "--components", 2, "--bones", 1]):
             said = self.fails(2, "out of reach", "rlpcenc", *clip, *options).err
             found = re.search(r"Try (?:more --components, or )?(--\S+) (\S+?)"

@@ -21,6 +21,7 @@ std::vector<std::uint8_t> encoded_strip() {
   rlpc_encode_options_init(&options, sizeof options);
   options.preset = RLPC_PRESET_FAST;
   options.target_value = 2.0;
+  options.gof_kind = RLPC_GOF_KIND_SKINNED;
   options.gof_frames = kGofFrames;
   const rlpc::WavingStrip strip(kVertices, kFrames);
   std::vector<std::uint8_t> stream;

@@ -456,8 +456,9 @@ TEST(FrameEncoder, ALaterGofThatNeedsAHigherLevelIsAnError) {
     format.num_frames = 2 * kGofFrames;
     format.box_max = {1, 1, 1};
     format.least_level = least_level;
-    auto encoder = FrameEncoder::create(
-        format, settings_of(Profile::kMain, {Target::kNone, 0.0}, kGofFrames), discard);
+    EncoderSettings settings = settings_of(Profile::kMain, {Target::kNone, 0.0}, kGofFrames);
+    settings.gof_kind = GofKind::kSkinned;
+    auto encoder = FrameEncoder::create(format, settings, discard);
     std::vector<float> xyz(3 * kVertices);
     std::uint32_t random = 1;
     for (std::uint32_t f = 0; f < format.num_frames; ++f) {

@@ -77,7 +77,10 @@ EncodedSpan KindSearch::compare(double step, double analysis_step) {
     const SpanCost cost = cost_of(encoded, frames_);
     const SpanCost at_equal_error =
         cost_at_error(*coder, frames_, step, cost, best_cost.squared_error);
-    if (ratio_at_equal_error(at_equal_error, best_cost) >= 1.0) continue;
+    // fixed: by less, the likeliest kind is kept: it decodes faster, and becomes a skin in
+    // glTF.
+    constexpr double kWorthIt = 0.98;
+    if (ratio_at_equal_error(at_equal_error, best_cost) >= kWorthIt) continue;
     if (chosen_ > 0) coders_[chosen_].reset();
     coders_[k] = std::move(coder);
     chosen_ = k;

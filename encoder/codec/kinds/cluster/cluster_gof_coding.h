@@ -14,8 +14,8 @@ namespace rlpc {
 
 // How a GOF is divided into clusters.
 struct ClusterChoice {
-  std::uint32_t clusters;
-  bool world;  // analyse in world coordinates instead of local coordinate frames
+  std::uint32_t clusters = 1;
+  bool world = false;  // analyse in world coordinates instead of local coordinate frames
 };
 
 // `step` is in grid steps everywhere. It is ignored if the settings give explicit quantisers

@@ -35,11 +35,6 @@ class ClusterSpanCoder : public SpanCoder {
                           : search_clusters(coding_, step);
     }
     return coding_.encode(step, analysis_.get(analysis_step, [&] {
-      if (clusters_->analysis) {
-        ClusterGofAnalysis analysis = std::move(*clusters_->analysis);
-        clusters_->analysis.reset();
-        return analysis;
-      }
       return coding_.analyse(analysis_step, clusters_->choice.world, clusters_->clustering);
     }));
   }

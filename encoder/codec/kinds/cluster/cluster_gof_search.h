@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "encoder/codec/kinds/cluster/cluster_gof_coding.h"
 
@@ -11,7 +10,6 @@ namespace rlpc {
 struct FoundClusters {
   ClusterChoice choice{};
   Clustering clustering;
-  std::optional<ClusterGofAnalysis> analysis = {};  // for the step, if the search made one
 };
 
 // Returns the clusters with the lowest cost at a step (grid steps), among those that the

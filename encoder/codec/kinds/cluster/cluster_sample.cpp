@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 
@@ -84,7 +85,7 @@ ClusterSample::Estimate ClusterSample::cheapest(double step) const {
   best.cost.bits *= scale;
   best.cost.squared_error *= scale;
   best.choice.clusters =
-      std::clamp(static_cast<std::uint32_t>(scale * best.choice.clusters + 0.5), 1U,
+      std::clamp(static_cast<std::uint32_t>(std::lround(scale * best.choice.clusters)), 1U,
                  header_.level().max_clusters);
   return best;
 }

@@ -44,7 +44,6 @@ const LegalGof kDyadic{
      {0x5E},
      {0x24, 0xA4, 0xE5, 0xA7, 0x98, 0x10, 0x55, 0x73}},
     {15, 1, 5, 1, 5, 2, 5, 1, 1},
-    // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): the lines of one unit
     {"first_frame 0\nnum_gof_frames_minus1 4\ngof_kind 3\nframe_pattern_idc 2\n"
      "pattern_period_log2 2\ntemporal_layers_minus1 1\nexact_flag 0\n"
      "frame_step_minus1 20 31 65535\ndamping_log2 6\nouter_weight 3\nouter_scale 11\n"
@@ -53,6 +52,7 @@ const LegalGof kDyadic{
      "num_patches 3\ncluster_predicted_flag 0\ncluster_idx 2\ncluster_predicted_flag 1 0\n"
      "cluster_idx 0\ncluster_predicted_flag 1 1 1 0\ncluster_idx 1\n"
      "cluster_predicted_flag 1 1",
+     // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): lines of one unit
      "frame_idx 0\nlayer_group_idx 0\n"
      "frame_residual 40 -20 7 3 1 -1 2000 -5 6 9 -8 0 1 4 -3",
      "frame_idx 0\nlayer_group_idx 1\nframe_crc 305419896\n"

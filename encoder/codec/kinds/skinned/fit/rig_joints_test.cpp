@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kFrames = 10;
 constexpr int kMovedFrames = 2 * (kFrames / 2);  // of two vertices, every second frame
-constexpr double kLever = 100.0;  // distance of the vertices from the pivot
+constexpr double kLever = 100.0;                 // distance of the vertices from the pivot
 
 // Bone 1 turns by `angle` relative to bone 0 in every second frame, and leaves it by `gap`.
 Rig two_bones(double gap, double angle) {
