@@ -17,9 +17,9 @@ constexpr std::uint32_t kPositions = 60000;
 constexpr std::uint32_t kMinVertices = 300;   // fixed: several clusters
 constexpr std::uint32_t kMaxVertices = 1500;  // fixed: time
 
-constexpr std::size_t kNumCounts = 10;      // fixed: up to 32 clusters of the sample
-constexpr std::size_t kFirstLocal = 4;      // fixed: six clusters, two for each region
-constexpr std::uint32_t kSeedVertices = 3;  // fixed: number per cluster
+constexpr std::size_t kSampleCounts = 10;     // fixed: up to 32 clusters of the sample
+constexpr std::size_t kFirstLocal = 4;        // fixed: six clusters, two for each region
+constexpr std::uint32_t kSeedsOfCluster = 3;  // fixed: number per cluster
 
 std::uint32_t vertices_of_sample(std::uint32_t num_vertices, std::uint32_t num_frames) {
   const std::uint32_t max = std::clamp(kPositions / num_frames, kMinVertices, kMaxVertices);
@@ -41,15 +41,15 @@ struct ClusterSample::Search {
   std::unique_ptr<ClusterMaker> maker = coding.cluster_maker();
 
   Estimate run(bool world) {
-    std::array<std::optional<SpanCost>, kNumCounts> known;
+    std::array<std::optional<SpanCost>, kSampleCounts> known;
     const auto cost_at = [&](std::size_t i) -> const SpanCost& {
       if (!known[i]) {
         known[i] = cost_of(coding.encode(step, {count_at(i), world}, *maker), coding.frames());
       }
       return *known[i];
     };
-    const std::uint32_t max = coding.frames().num_vertices / kSeedVertices;
-    std::size_t last = kNumCounts - 1;
+    const std::uint32_t max = coding.frames().num_vertices / kSeedsOfCluster;
+    std::size_t last = kSampleCounts - 1;
     while (last > 0 && count_at(last) > max) --last;
     std::size_t best = world ? 0 : std::min(kFirstLocal, last);
     for (const bool up : {true, false}) {
