@@ -1,6 +1,7 @@
 // Connected regions of a mesh that stand for all of it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,6 +19,15 @@ struct MeshSample {
   // Returns the positions of the sample in some frames of a span.
   SpanFrames frames_of(const SpanFrames& span, const FrameRange& some) const;
 };
+
+// fixed: Regions of fewer vertices have no inside.
+inline constexpr std::uint32_t kSmallestSample = 300;
+
+// Returns the number of vertices to sample: `most`, but no more than half of the mesh, and no
+// fewer than kSmallestSample.
+inline std::uint32_t sample_size(std::uint32_t num_vertices, std::uint32_t most) {
+  return std::max(std::min(most, num_vertices / 2), kSmallestSample);
+}
 
 // Takes regions of about equal size, each grown over edges around a vertex. The vertices are
 // spread evenly over the decoded order, which follows the surface. Where a component of the

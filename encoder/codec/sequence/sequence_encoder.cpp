@@ -38,11 +38,11 @@ std::uint32_t spans_together(const SequenceHeader& header, std::uint32_t longest
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(max, 1, num_threads));
 }
 
-// Searches of contained profiles that take some tenths of a second are never given up: where
-// streams have few bytes, sizes and errors jump from one step to the next.
-bool may_give_up(FrameSource& source) {
-  constexpr std::uint64_t kSmall = std::uint64_t{1}
-                                   << 15;  // fixed: time; vertices of all frames
+// Whether the search of a contained profile may end before it has reached the target. One that
+// takes some tenths of a second may not: where streams have few bytes, sizes and errors jump
+// from one step to the next.
+bool may_give_up(const FrameSource& source) {
+  constexpr std::uint64_t kSmall = 1 << 15;  // fixed: time; vertices of all frames
   return std::uint64_t{source.num_vertices()} * source.num_frames() > kSmall;
 }
 
@@ -371,7 +371,9 @@ std::uint64_t SequenceEncoder::bytes_of(const TargetResult& result) const {
 
 InputResult<TargetResult> SequenceEncoder::find(const Rival* rival) {
   if (!may_give_up(source_)) rival = nullptr;
-  if (rival != nullptr && rival->is_uncontested()) {
+  // Searches of the preset fast take little time.
+  const bool takes_long = settings_.preset != Preset::kFast;
+  if (rival != nullptr && rival->is_uncontested() && takes_long) {
     TargetResult none;
     none.given_up = true;
     return none;

@@ -18,7 +18,7 @@ double bits_of_rig(const EncodedSpan& encoded) {
   return bits_of(std::span(encoded.units.begin(), gof));
 }
 
-// Returns what a coder that took `cost` at a step takes at about another squared error.
+// Returns the cost of a coder at about another squared error. cost: that of encode(step).
 SpanCost cost_at_error(SpanCoder& coder, const SpanFrames& frames, double step,
                        const SpanCost& cost, double squared_error) {
   // fixed: bits_at_equal_error() is right about smaller differences.

@@ -83,7 +83,7 @@ EncodedSpan SplitCoder::encode(double step, double analysis_step) {
 }
 
 bool SplitCoder::is_out_of_reach(double step, const SpanCost& rival) {
-  constexpr std::size_t kAsked = 2;  // fixed: GOFs differ less than their sample from the mesh
+  constexpr std::size_t kAsked = 2;  // fixed: time; GOFs of a span resemble each other
   const std::vector<FrameRange> gofs = frames_.gofs();
   const std::size_t count = std::min(gofs.size(), kAsked);
   for (std::size_t i = 0; i < count; ++i) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/parallel/for_each.h"
+#include "encoder/codec/kinds/cluster/cluster_counts.h"
 #include "encoder/codec/kinds/cluster/variant_search.h"
 #include "encoder/codec/spans/count_at.h"
 #include "encoder/codec/spans/lagrangian.h"
@@ -18,8 +19,7 @@ namespace {
 // tuned (off: 0): The search for the number of clusters climbs from this entry of the series 1,
 // 2, 3, 4, 6, 8, 12 (count_at), so from eight clusters.
 constexpr std::size_t kFirstCount = 5;
-constexpr std::size_t kNumCounts = 13;      // fixed: up to 96
-constexpr std::uint32_t kSeedVertices = 3;  // fixed: number per cluster
+constexpr std::size_t kNumCounts = 13;  // fixed: up to 96
 
 class ClusterSearch {
  public:
@@ -58,37 +58,15 @@ class ClusterSearch {
     return cost(coding_.encode(step_, choice, *maker_));
   }
 
-  // Returns the last number that leaves vertices besides those of seeds.
-  std::size_t last_count() const {
-    std::size_t last = 0;
-    while (last + 1 < kNumCounts &&
-           count_at(last + 1) * kSeedVertices < coding_.frames().num_vertices) {
-      ++last;
-    }
-    return last;
-  }
-
   std::uint32_t choose_count(bool world) {
     return choose_count(world, world ? 0 : kFirstCount,
                         coding_.settings().preset == Preset::kSlow ? 1 : 2);
   }
-  // Climbs from a number of clusters, count_at(start), while the cost falls.
   std::uint32_t choose_count(bool world, std::size_t start, std::size_t stride) {
-    const std::size_t last = last_count();
-    std::array<double, kNumCounts> known{};
-    const auto cost_at = [&](std::size_t i) {
-      if (known[i] == 0.0) known[i] = cost({count_at(i), world});
-      return known[i];
-    };
-    std::size_t best = std::min(last, start);
-    for (const bool up : {true, false}) {
-      for (std::size_t i = best; up ? i + stride <= last : i >= stride;) {
-        i = up ? i + stride : i - stride;
-        if (cost_at(i) >= cost_at(best)) break;
-        best = i;
-      }
-    }
-    return count_at(best);
+    const std::size_t last = last_cluster_count(coding_.frames().num_vertices, kNumCounts);
+    return count_at(climb(start, last, stride, [&](std::size_t i) {
+      return cost({count_at(i), world});
+    }));
   }
 
   ClusterChoice choose() {

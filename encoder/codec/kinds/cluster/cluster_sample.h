@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "common/codec/mesh/topology.h"
 #include "common/codec/syntax/sequence_header.h"
@@ -32,8 +31,6 @@ class ClusterSample {
   Estimate cheapest(double step) const;
 
  private:
-  struct Search;
-
   const std::uint32_t num_vertices_;  // of the whole mesh
   const MeshSample sample_;
   const SpanFrames frames_;

@@ -15,7 +15,6 @@ namespace {
 constexpr std::uint32_t kWindow = 65;
 // tuned: Vertices of a sample with kWindow frames; more if there are fewer frames.
 constexpr std::uint32_t kVertices = 1800;
-constexpr std::uint32_t kMinVertices = 300;  // fixed: regions with an inside
 // tuned: Maximum number of vertices of a sample.
 constexpr std::uint32_t kMaxVertices = 2500;
 
@@ -28,8 +27,8 @@ constexpr double kOthers = 1.25;
 std::uint32_t window_of(std::uint32_t num_frames) { return std::min(num_frames, kWindow); }
 
 std::uint32_t vertices_of_sample(std::uint32_t num_vertices, std::uint32_t num_frames) {
-  const std::uint32_t max = std::min(kVertices * kWindow / window_of(num_frames), kMaxVertices);
-  return std::min(max, std::max(num_vertices / 2, kMinVertices));
+  return sample_size(num_vertices,
+                     std::min(kVertices * kWindow / window_of(num_frames), kMaxVertices));
 }
 
 // Returns settings that code the first frame of a sample by the usual weights.
@@ -59,7 +58,7 @@ InterSample::InterSample(const SequenceMesh& mesh, const EncoderSettings& settin
       maker_(mesh_, meshes_[Prediction::kLayers], settings_, frames_) {}
 
 bool InterSample::saves_time(std::uint32_t num_vertices) {
-  return num_vertices > 2 * kMinVertices;
+  return num_vertices > 2 * kSmallestSample;
 }
 
 // Returns the expected cost of the whole GOF.
@@ -82,14 +81,12 @@ bool InterSample::may_follow(InterTrial& trial, const SpanCost& rival) const {
 
 bool InterSample::is_out_of_reach(double step, const SpanCost& rival) {
   maker_.forget_first_frames();
-  const auto first = maker_.start({patterns_.front()}, step);
-  if (!may_follow(*first, rival)) return true;
+  auto best = maker_.start({patterns_.front()}, step);
+  if (!may_follow(*best, rival)) return true;
+  if (patterns_.size() > 1) best = cheapest_of(without_patches(), step);
+  pattern_.put(step, best->choice().pattern);
+  if (ratio_at_equal_error(whole(*best), rival) <= kMargin) return false;
   std::vector<InterChoice> choices;
-  for (const FramePattern& pattern : patterns_) choices.push_back({pattern});
-  const auto without_patches = cheapest_of(choices, step);
-  pattern_.put(step, without_patches->choice().pattern);
-  if (ratio_at_equal_error(whole(*without_patches), rival) <= kMargin) return false;
-  choices.clear();
   for (const std::uint32_t count : patches_) {
     if (count > 0) choices.push_back({patterns_.front(), patches_of_sample(count)});
   }
@@ -101,10 +98,14 @@ const FramePattern& InterSample::cheapest_pattern(double step) {
   if (patterns_.size() == 1) return patterns_.front();
   return pattern_.get(step, [&] {
     maker_.forget_first_frames();
-    std::vector<InterChoice> choices;
-    for (const FramePattern& pattern : patterns_) choices.push_back({pattern});
-    return cheapest_of(choices, step)->choice().pattern;
+    return cheapest_of(without_patches(), step)->choice().pattern;
   });
+}
+
+std::vector<InterChoice> InterSample::without_patches() const {
+  std::vector<InterChoice> choices;
+  for (const FramePattern& pattern : patterns_) choices.push_back({pattern});
+  return choices;
 }
 
 std::unique_ptr<InterTrial> InterSample::cheapest_of(const std::vector<InterChoice>& choices,

@@ -39,6 +39,7 @@ class InterSample {
  private:
   SpanCost whole(const InterTrial& trial) const;
   bool may_follow(InterTrial& trial, const SpanCost& rival) const;
+  std::vector<InterChoice> without_patches() const;
   std::unique_ptr<InterTrial> cheapest_of(const std::vector<InterChoice>& choices, double step);
   std::uint32_t patches_of_sample(std::uint32_t count) const;
 

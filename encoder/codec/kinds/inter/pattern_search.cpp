@@ -58,6 +58,29 @@ void restart_at_equal_error(Encodings& encodings, const StartTrial& start) {
   }
 }
 
+// Codes all to a frame, with steps that lead to about the error of the first.
+void code_at_equal_error(Encodings& encodings, std::uint32_t count, const StartTrial& start) {
+  code_all_to(encodings, count);
+  restart_at_equal_error(encodings, start);
+  code_all_to(encodings, count);
+}
+
+Encodings start_all(const std::vector<InterChoice>& choices, const StartTrial& start) {
+  Encodings encodings;
+  for (const InterChoice& choice : choices) encodings.push_back(start(choice));
+  return encodings;
+}
+
+std::uint32_t longest_period(const std::vector<InterChoice>& choices) {
+  std::uint32_t period = 1;
+  for (const InterChoice& choice : choices) period = std::max(period, choice.pattern.period());
+  return period;
+}
+
+bool is_cheaper(const std::unique_ptr<InterTrial>& a, const std::unique_ptr<InterTrial>& b) {
+  return a->cost() < b->cost();
+}
+
 }  // namespace
 
 std::vector<FramePattern> patterns_of(const EncoderSettings& settings, bool is_open_ended,
@@ -107,41 +130,26 @@ std::vector<InterChoice> choices_of_patches(const std::vector<FramePattern>& pat
 
 InterChoice cheapest_at_start(const std::vector<InterChoice>& choices, std::uint32_t num_frames,
                               const StartTrial& start) {
-  constexpr std::size_t kPart = 8;  // tuned: a part of the frames
+  // tuned: A number of patches is chosen by one in this many of the frames, the first.
+  constexpr std::size_t kPart = 8;
   if (choices.size() == 1) return choices.front();
-  Encodings all;
-  std::uint32_t period = 1;
-  for (const InterChoice& choice : choices) {
-    all.push_back(start(choice));
-    period = std::max(period, choice.pattern.period());
-  }
-  const std::uint32_t end = whole_periods(num_frames, kPart, period);
-  code_all_to(all, end);
-  restart_at_equal_error(all, start);
-  code_all_to(all, end);
-  const auto best = std::min_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
-    return a->cost() < b->cost();
-  });
+  Encodings all = start_all(choices, start);
+  code_at_equal_error(all, whole_periods(num_frames, kPart, longest_period(choices)), start);
+  const auto best = std::min_element(all.begin(), all.end(), is_cheaper);
   return {(*best)->choice().pattern, (*best)->choice().num_patches};
 }
 
 std::unique_ptr<InterTrial> cheapest(const std::vector<InterChoice>& choices,
                                      std::uint32_t num_frames, const StartTrial& start) {
-  Encodings left;
-  std::uint32_t period = 1;
-  for (const InterChoice& choice : choices) {
-    left.push_back(start(choice));
-    period = std::max(period, choice.pattern.period());
-  }
+  Encodings left = start_all(choices, start);
   if (left.size() == 1) return std::move(left.front());
+  const std::uint32_t period = longest_period(choices);
   std::size_t part = std::bit_ceil(left.size());
-  code_all_to(left, whole_periods(num_frames, part, period));
-  restart_at_equal_error(left, start);
+  code_at_equal_error(left, whole_periods(num_frames, part, period), start);
   for (; left.size() > 1; part /= 2) {
     const std::uint32_t end = whole_periods(num_frames, part, period);
     code_all_to(left, end);
-    std::stable_sort(left.begin(), left.end(),
-                     [](const auto& a, const auto& b) { return a->cost() < b->cost(); });
+    std::stable_sort(left.begin(), left.end(), is_cheaper);
     const std::size_t half = std::max<std::size_t>((left.size() + 1) / 2, 2);
     left.resize(end == num_frames ? 1 : half);
   }
