@@ -23,10 +23,10 @@ struct MeshSample {
 // fixed: Regions of fewer vertices have no inside.
 inline constexpr std::uint32_t kSmallestSample = 300;
 
-// Returns the number of vertices to sample: `most`, but no more than half of the mesh, and no
+// Returns the number of vertices to sample: `limit`, but no more than half of the mesh, and no
 // fewer than kSmallestSample.
-inline std::uint32_t sample_size(std::uint32_t num_vertices, std::uint32_t most) {
-  return std::max(std::min(most, num_vertices / 2), kSmallestSample);
+inline std::uint32_t sample_size(std::uint32_t num_vertices, std::uint32_t limit) {
+  return std::max(std::min(limit, num_vertices / 2), kSmallestSample);
 }
 
 // Takes regions of about equal size, each grown over edges around a vertex. The vertices are

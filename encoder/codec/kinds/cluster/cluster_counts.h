@@ -28,14 +28,14 @@ std::size_t climb(std::size_t start, std::size_t last, std::size_t stride,
                   const CostAt& cost_at) {
   start = std::min(last, start);
   std::size_t best = start;
-  double least = cost_at(best);
+  double lowest_cost = cost_at(best);
   for (const bool up : {true, false}) {
     if (best != start) break;
     for (std::size_t i = best; up ? i + stride <= last : i >= stride;) {
       i = up ? i + stride : i - stride;
       const double cost = cost_at(i);
-      if (cost >= least) break;
-      least = cost;
+      if (cost >= lowest_cost) break;
+      lowest_cost = cost;
       best = i;
     }
   }
