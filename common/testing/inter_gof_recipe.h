@@ -99,7 +99,7 @@ struct InterGofRecipe {
     if (!exact_flag) {
       for (const std::uint32_t step : layer_step_minus1) w.u(4, step);
     }
-    if (num_layer_groups_minus1 == 0) w.flag(rest_order_flag);
+    w.flag(rest_order_flag);
     if (rest_order_flag) {
       w.u(6, rest_edge_weight);
       w.u(6, rest_ring_weight);
@@ -128,7 +128,7 @@ class FrameRecipe : public SectionRecipe {
   std::uint32_t frame_idx;
   std::optional<bool> gof_end_flag;  // of open-ended streams
   std::uint32_t layer_group_idx;
-  std::optional<std::uint32_t> unit_frames_minus1;  // of GOFs with one layer group
+  std::uint32_t unit_frames_minus1 = 0;
   std::vector<EarlierRecipe> earlier;  // of each frame, where earlier_flag is coded
   std::vector<std::uint32_t> frame_crc;
   bool has_section = true;
@@ -150,7 +150,7 @@ class FrameRecipe : public SectionRecipe {
     if (gof_end_flag) w.flag(*gof_end_flag);
     if (!gof_end_flag.value_or(false)) {
       w.ue(layer_group_idx);
-      if (unit_frames_minus1) w.ue(*unit_frames_minus1);
+      w.ue(unit_frames_minus1);
       for (const EarlierRecipe& frame : earlier) {
         w.flag(frame.earlier_distance_minus1.has_value());
         if (!frame.earlier_distance_minus1) continue;

@@ -86,7 +86,7 @@ InterGof random_frame_settings(const OrderedMesh& mesh, std::uint32_t num_frames
   for (std::uint8_t& step : gof.layer_step) {
     if (!gof.exact_flag) step = static_cast<std::uint8_t>(1 + below(kMaxLayerStep));
   }
-  if (gof.layer_group_size.size() == 1 && below(2) == 0) {
+  if (below(2) == 0) {
     gof.rest = {gof.exact_flag, true, static_cast<int>(below(64)), static_cast<int>(below(64)),
                 below(2) == 0,  false};
   }
@@ -111,8 +111,8 @@ inline InterGof random_inter_gof(std::uint64_t seed, const OrderedMesh& mesh,
   const auto below = [&](std::uint32_t n) { return random() % n; };
   InterGof gof = random_frame_settings(mesh, num_frames, below);
   auto frames = std::make_shared<std::vector<InterFrame>>(num_frames);
-  std::vector<std::uint32_t> max_groups(
-      gof.pattern.temporal_layers, static_cast<std::uint32_t>(gof.layer_group_size.size()));
+  const auto num_groups = static_cast<std::uint32_t>(gof.layer_group_size.size());
+  std::vector<std::uint32_t> max_groups(gof.pattern.temporal_layers, num_groups);
   const std::uint32_t max_bits = below(4) == 0 ? 28 : 6;
   const FrameOrder order(gof.pattern, num_frames);
   for (std::uint32_t place = 0; place < num_frames; ++place) {
@@ -122,8 +122,9 @@ inline InterGof random_inter_gof(std::uint64_t seed, const OrderedMesh& mesh,
     if (below(8) == 0) groups = below(groups + 1);
     for (std::size_t t = 1; t < max_groups.size(); ++t)
       max_groups[t] = std::min(max_groups[t], max_groups[t - 1]);
-    frame.layer_groups = groups;
     if (groups == 0) continue;
+    const bool is_in_order = place == 0 && gof.rest.order_flag;
+    frame.layer_groups = is_in_order ? num_groups : groups;
     if (place > 0 && gof.max_earlier_distance > 0 && below(4) == 0) {
       const std::uint32_t distance = 1 + below(std::min(place, gof.max_earlier_distance));
       const FramePlace& before = order[place - distance];
@@ -148,7 +149,7 @@ inline InterGof random_inter_gof(std::uint64_t seed, const OrderedMesh& mesh,
     }
     frame.residual = CompactResiduals(3 * std::size_t{mesh.num_vertices()});
     std::uint32_t layers = 0;
-    for (std::uint32_t j = 0; j < groups; ++j) layers += gof.layer_group_size[j];
+    for (std::uint32_t j = 0; j < frame.layer_groups; ++j) layers += gof.layer_group_size[j];
     for (const std::uint32_t v : mesh.vertices_of_layers(0, layers)) {
       if (mode_of(frame.patches, gof.patch_of_vertex, v) == PatchMode::kAlone) continue;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -159,7 +160,7 @@ inline InterGof random_inter_gof(std::uint64_t seed, const OrderedMesh& mesh,
       }
     }
     frame.residual.sort();
-    if (gof.frame_hash_flag && groups == gof.layer_group_size.size()) {
+    if (gof.frame_hash_flag && frame.layer_groups == num_groups) {
       frame.frame_crc = FrameCrc{random(), 0};
     }
   }

@@ -246,6 +246,18 @@ class Cutting(CutTest):
                 self.assertEqual(len(sizes) - 1, min(asked[1], sum(sizes)))  # except group 0
             self.ok("rlpcdec", self.path("a.rlpc"), "--verify")
 
+    def test_layer_cuts(self):
+        for more in ((), ("--profile", "high", "--gof-kind", "inter")):
+            self.encode(self.path("a.rlpc"), "--gof", 30, "--layer-cuts", "10,30", *more)
+            info = self.ok("rlpcinfo", self.path("a.rlpc"), "--gofs", "--json").json()
+            for gof in info["gofs"]:
+                self.assertEqual(len(gof["layer_group_size"]), 3)
+        for cuts, words in (("30,10", "each is greater than the one before"),
+                            ("0,3", "--layer-cuts"), ("3,3", "each is greater"),
+                            ("x", "--layer-cuts")):
+            self.fails(64, words, "rlpcenc", self.path("a.obj"), "-o", self.path("b.rlpc"),
+                       "--layer-cuts", cuts)
+
     def test_what_is_cut_cannot_be_verified(self):
         path = self.rich_stream()
         for cut in ("--max-components", "--max-layers", "--max-temporal-layers"):

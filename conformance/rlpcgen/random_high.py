@@ -271,8 +271,8 @@ class HighSequence(random_main.MainSequence):
     def _frames(self):
         """The frame units of a GOF; from some frame on, fewer layer groups, or none."""
         ns, source = self._writer.ns, self._writer.source
-        if ns["num_layer_groups_minus1"] == 0 and ns["open_end_flag"] == 0:
-            return self._shared_units()
+        if ns["open_end_flag"] == 0:
+            return self._units_in_any_order()
         maximum = [ns["num_layer_groups_minus1"] + 1] * (ns["temporal_layers_minus1"] + 1)
         place = -1
         while place + 1 < ns["NumGofFrames"]:
@@ -283,15 +283,17 @@ class HighSequence(random_main.MainSequence):
                 maximum[layer] = self._n.between(0, maximum[layer])
                 maximum[layer:] = [min(n, maximum[layer]) for n in maximum[layer:]]
             source.unit_frames = self._unit_frames(place)
-            for group in range(maximum[layer]):
-                source.slice = frame, group
-                self._unit("FRAME")
-                if ns["repeat_flag"]:
-                    break
             if maximum[layer] > 0:
                 place += source.unit_frames - 1
+            for group in range(maximum[layer]):
+                if group > 0 and not ns["FramesToCome"]:
+                    break
+                if group > 0:
+                    frame, source.unit_frames = ns["FramesToCome"][0], len(ns["FramesToCome"])
+                source.slice = frame, group
+                self._unit("FRAME")
             # The order stays if no period is cut off.
-            if (ns["open_end_flag"] and self._n.chance(10) and place + 1 < ns["NumGofFrames"]
+            if (self._n.chance(10) and place + 1 < ns["NumGofFrames"]
                     and sorted(ns["FrameOrder"][:place + 1]) == list(range(place + 1))
                     and place % ns["PatternPeriod"] == 0):
                 source.slice, source.ends_gof = (place + 1, 0), True
@@ -299,33 +301,50 @@ class HighSequence(random_main.MainSequence):
                 source.ends_gof = False
                 break
 
-    def _shared_units(self):
-        """Units of the frames of one temporal layer or another, each after what it needs."""
+    def _units_in_any_order(self):
+        """Units of temporal layers and layer groups, each after what it needs; some left out."""
         ns, source = self._writer.ns, self._writer.source
-        left = [[] for _ in range(ns["temporal_layers_minus1"] + 1)]
-        for place, frame in enumerate(ns["FrameOrder"]):
-            left[ns["TemporalLayerOfFrame"](frame)].append(place)
-        while any(left):
-            ready = {}
-            for t, places in enumerate(left):
-                end = min((lower[0] for lower in left[:t] if lower), default=ns["NumGofFrames"])
-                ready[t] = [place for place in places if place < end]
-            t = self._n.pick([t for t, places in ready.items() if places])
+        groups = range(ns["num_layer_groups_minus1"] + 1)
+        layers = range(ns["temporal_layers_minus1"] + 1)
+        left = {(t, g): [p for p, f in enumerate(ns["FrameOrder"])
+                         if ns["TemporalLayerOfFrame"](f) == t] for t in layers for g in groups}
+        while True:
+            for g in groups[1:]:
+                for t in layers:
+                    left[t, g] = [p for p in left[t, g] if not ns["IsWhole"](ns["FrameOrder"][p])]
+            ready = {key: self._ready(left, *key) for key in left if left[key]}
+            ready = {key: places for key, places in ready.items() if places}
+            if not ready:
+                return
+            layer, group = self._n.pick(list(ready))
+            first = left[layer, group][0]
             if self._n.chance(self._plan.cut_percent):
-                first = left[t][0]
-                left[t] = []
-                left[t + 1:] = [[p for p in places if p < first] for places in left[t + 1:]]
+                for t, g in left:
+                    if t >= layer and g >= group:
+                        left[t, g] = [p for p in left[t, g] if p < first]
                 continue
-            maximum = 1 if self._n.chance(50) else len(ready[t])
-            source.unit_frames = self._n.between(1, maximum)
-            source.slice = ns["FrameOrder"][left[t][0]], 0
+            count = len(ready[layer, group])
+            source.unit_frames = self._n.between(1, 1 if self._n.chance(50) else count)
+            source.slice = ns["FrameOrder"][first], group
             self._unit("FRAME")
-            del left[t][:source.unit_frames]
+            del left[layer, group][:source.unit_frames]
+
+    def _ready(self, left, layer, group):
+        """The first places left of a temporal layer whose units of a layer group can come next."""
+        ns = self._writer.ns
+        end = min((left[t, group][0] for t in range(layer) if left[t, group]),
+                  default=ns["NumGofFrames"])
+        places = []
+        for place in left[layer, group]:
+            if place >= end or ns["FrameGroups"][ns["FrameOrder"][place]] != group:
+                break
+            places.append(place)
+        return places
 
     def _unit_frames(self, place):
         """Number of frames in a unit that begins at a place."""
         ns = self._writer.ns
-        if ns["num_layer_groups_minus1"] > 0 or self._n.chance(50):
+        if self._n.chance(50):
             return 1
         layers = [ns["TemporalLayerOfFrame"](f) for f in ns["FrameOrder"][place:]]
         run = next((i for i, layer in enumerate(layers) if layer != layers[0]), len(layers))

@@ -219,6 +219,8 @@ def inferred(writer, name, indices):
         return None  # known once the frame, or the whole stream, has been written
     if name == "layer_group_idx" and writer.source.unit_code == ns["FRAME"]:
         return ns["FrameGroups"][ns["frame_idx"]]
+    if name == "unit_frames_minus1" and ns["layer_group_idx"] > 0:
+        return max(0, len(ns["FramesToCome"]) - 1)
     if name in _SLICES:
         return _SLICES[name](ns)
     if name in writer.inferred:
@@ -247,9 +249,9 @@ def _next_layers(ns):
 
 def _next_frame(ns):
     """The frame of the next frame unit, if none is left out: all layer groups of one first."""
-    order, place = ns["FrameOrder"], ns["LastPlace"]
-    if place < 0 or ns["FrameGroups"][order[place]] > ns["num_layer_groups_minus1"]:
-        place += 1
+    if ns["FramesToCome"]:
+        return ns["FramesToCome"][0]
+    order, place = ns["FrameOrder"], ns["LastPlace"] + 1
     return order[place] if place < len(order) else ns["NumGofFrames"]
 
 
@@ -295,14 +297,14 @@ class StreamBuilder:
         return _finish(writer.finish(self._program), settings), writer
 
     def _unit(self, recipe, writer, source, unit, code, codes):
-        broken = len(writer.broken)
         source.begin(unit, code, writer.ns)
         with _Hooks(writer, source):
             try:
                 writer.unit(code, _payload(source), lambda data: _change(source, data))
             except (mesh_gates.GateError, stream_writer.WriteError) as error:
                 raise recipes.RecipeError(f"{recipe.path}: {unit.name}: {error}") from error
-        if len(writer.broken) == broken and source.unused():
+        # Once a requirement is broken, units can have other elements than they should.
+        if not writer.broken and source.unused():
             entry = source.unused()[0]
             raise recipes.RecipeError(f"{entry.place}: {entry.name} has values that the unit "
                                       "does not use")

@@ -99,7 +99,7 @@ class StreamMaker {
                                noise_.residuals(std::size_t{3} * plan_.size.vertices),
                                std::vector<Counterpart>(plan_.size.vertices));
         writer.end_group();
-        unit(UnitType::kFrame, writer.finish_unit(0));
+        unit(UnitType::kFrame, writer.finish_units(0)[0]);
         continue;
       }
       writer.set_patches(motions());
@@ -110,7 +110,7 @@ class StreamMaker {
       }
       writer.end_group();
       const std::uint32_t layer = settings.pattern.temporal_layer(order[place].depth);
-      unit(UnitType::kFrame, writer.finish_unit(layer));
+      unit(UnitType::kFrame, writer.finish_units(layer)[0]);
     }
   }
 

@@ -86,8 +86,9 @@ struct MainTools {
   // of the tools above; if any member of this structure differs from its default, all GOFs are
   // skinned.
   bool clusters = true;
-  std::uint32_t component_groups = 0;  // groups of trajectories for slices; 0: by size
-  std::uint32_t layer_groups = 0;      // groups of vertex layers for slices; 0: by size
+  std::uint32_t component_groups = 0;     // groups of trajectories for slices; 0: by size
+  std::uint32_t layer_groups = 0;         // groups of vertex layers for slices; 0: by size
+  std::vector<std::uint32_t> layer_cuts;  // as in InterTools
 
   bool operator==(const MainTools&) const = default;
 };
@@ -105,13 +106,16 @@ struct InterTools {
   std::uint32_t temporal_layers = 1;  // 1 to 8; a stream can be cut to fewer
   InterWeights weights = InterWeights::kLearned;
   std::uint32_t layer_groups = 1;  // groups of vertex layers to which a stream can be cut
+  // Wanted numbers of vertices up to the cuts, which the ends of layers come near: as many as
+  // there are cuts, ascending, or none (from an eighth of the vertices on, by equal factors).
+  std::vector<std::uint32_t> layer_cuts;
   // Number of patches, parts of the mesh that can each follow one affine motion in a frame, up
   // to 1024; 0: no patches; none: for each GOF, the cheapest of several numbers.
   std::optional<std::uint32_t> patches;
   PartitionMethod partition = PartitionMethod::kMotion;  // makes the patches; not kSeeds
   std::optional<RestTools> rest;  // tools for the first frame of a GOF; none: kCounterparts
   // Maximum number of frames in a frame unit; none: about 4 kB of frames, or one frame with low
-  // delay. With several layer groups, no unit has more than one frame.
+  // delay.
   std::optional<std::uint32_t> frames_per_unit;
 
   bool operator==(const InterTools&) const = default;

@@ -46,6 +46,7 @@ inline constexpr std::array kEncoderOptions = std::to_array<SettingOption>({
     {"clusters = false", "--no-clusters"},
     {"component_groups", "--component-groups"},
     {"layer_groups", "--layer-groups"},
+    {"layer_cuts", "--layer-cuts"},
     {"adaptive_factors", "--adaptive-factors"},
     {"rest", "--rest"},
     {"track_levels", "--track-levels"},

@@ -1,7 +1,9 @@
 #include "encoder/codec/sequence/check_settings.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,10 +39,26 @@ std::vector<Parameter> parameters(const BaselineTools& tools) {
           {"'motion'", motion != defaults.motion}};
 }
 
+std::optional<InputError> check_cuts(const std::vector<std::uint32_t>& cuts,
+                                     std::uint32_t num_groups) {
+  if (cuts.empty()) return std::nullopt;
+  if (cuts.size() + 1 != num_groups) {
+    return InputError{
+        "'layer_cuts' needs a number of vertices for each cut, which are 1 fewer "
+        "than 'layer_groups'"};
+  }
+  if (cuts[0] == 0 || !std::is_sorted(cuts.begin(), cuts.end(), std::less_equal<>())) {
+    return InputError{
+        "the numbers of 'layer_cuts' are at least 1, and each is greater than the "
+        "one before"};
+  }
+  return std::nullopt;
+}
+
 std::vector<Parameter> parameters(const MainTools& tools) {
   const auto& [bones, prediction, influences, geometry_weights, outer_ring, layer_steps,
                temporal_weights, adaptive_factors, rest, track_levels, temporal_layers,
-               cobra_steps, clusters, component_groups, layer_groups] = tools;
+               cobra_steps, clusters, component_groups, layer_groups, layer_cuts] = tools;
   const MainTools defaults;
   return {{"'bones'", bones != defaults.bones},
           {"'prediction'", prediction != defaults.prediction},
@@ -52,7 +70,8 @@ std::vector<Parameter> parameters(const MainTools& tools) {
           {"'cobra_steps'", cobra_steps != defaults.cobra_steps},
           {"'clusters = false'", clusters != defaults.clusters},
           {"'component_groups'", component_groups != defaults.component_groups},
-          {"'layer_groups'", layer_groups != defaults.layer_groups}};
+          {"'layer_groups'", layer_groups != defaults.layer_groups},
+          {"'layer_cuts'", layer_cuts != defaults.layer_cuts}};
 }
 
 // Returns the parameters that the Main profile does not have.
@@ -166,6 +185,8 @@ std::optional<InputError> check_kinds(const EncoderSettings& s) {
         "layers of inter GOFs need GOFs of this kind alone: use 'gof_kind = inter'"};
   }
   if (s.inter.layer_groups < 1) return InputError{"there is at least one layer group"};
+  if (auto error = check_cuts(s.main.layer_cuts, s.main.layer_groups)) return error;
+  if (auto error = check_cuts(s.inter.layer_cuts, s.inter.layer_groups)) return error;
   if (s.inter != InterTools{} && !(s.may_use(GofKind::kInter) && s.profile == Profile::kHigh)) {
     return InputError{
         "'pattern', 'weights', 'patches' and, except for Baseline, 'partition' need "

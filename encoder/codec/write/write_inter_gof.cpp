@@ -54,7 +54,7 @@ std::vector<std::uint8_t> write_inter_gof_unit(const GofHeader& gof,
   w.ue(settings.max_earlier_distance);
   write_layer_groups(w, settings.layer_group_size);
   if (!settings.exact_flag) write_layer_steps(w, settings.layer_step);
-  if (settings.layer_group_size.size() == 1) write_rest_settings(w, settings.rest);
+  write_rest_settings(w, settings.rest);
   w.ue(settings.num_patches);
   w.byte_alignment();
   std::vector<std::uint8_t> payload = w.take();
@@ -68,9 +68,9 @@ std::vector<std::uint8_t> write_inter_gof_unit(const GofHeader& gof,
 }
 
 void FrameUnitWriter::start_frame(std::uint32_t place, const FramePlace& frame) {
-  frame_ = frame.frame;
-  unit_ = &unit_of(frame);
-  contexts_.start_frame(place, frame.depth);
+  place_ = place;
+  frame_ = frame;
+  unit_ = &unit_of(frame, 0);
   if (place > 0) patch_contexts_.start_frame(frame.depth);
   patches_.clear();
   reference_distance_ = 0;
@@ -94,15 +94,14 @@ void FrameUnitWriter::write_patches() {
 }
 
 void FrameUnitWriter::repeat(const FramePlace& frame, std::uint32_t distance) {
-  Unit& unit = unit_of(frame);
-  unit.layer_group = 0;
-  unit.frames.push_back({.frame = frame.frame, .distance = distance, .is_repeated = true});
+  unit_of(frame, 0).frames.push_back(
+      {.frame = frame.frame, .distance = distance, .is_repeated = true});
 }
 
 void FrameUnitWriter::start_group(std::uint32_t layer_group) {
-  unit_->layer_group = layer_group;
-  contexts_.start_group(layer_group);
-  unit_->frames.push_back({.frame = frame_, .distance = reference_distance_});
+  unit_ = &unit_of(frame_, layer_group);
+  contexts_.start_group(place_, frame_.depth, layer_group);
+  unit_->frames.push_back({.frame = frame_.frame, .distance = reference_distance_});
   if (!unit_->section) unit_->section.emplace();
   if (layer_group == 0) write_patches();
 }
@@ -129,18 +128,40 @@ void FrameUnitWriter::end_group(std::uint32_t frame_crc) {
   unit_->frames.back().crc = frame_crc;
 }
 
+FrameUnitWriter::Unit& FrameUnitWriter::unit_of(const FramePlace& frame,
+                                                std::uint32_t layer_group) {
+  std::vector<Unit>& units = units_[settings_.pattern.temporal_layer(frame.depth)];
+  if (units.size() <= layer_group) units.resize(layer_group + 1);
+  return units[layer_group];
+}
+
+std::size_t FrameUnitWriter::unit_bytes(std::uint32_t layer) const {
+  std::size_t bytes = 0;
+  for (const Unit& unit : units_[layer]) bytes += unit.section ? unit.section->size() : 0;
+  return bytes;
+}
+
+std::vector<std::vector<std::uint8_t>> FrameUnitWriter::finish_units(std::uint32_t layer) {
+  assert(unit_frames(layer) > 0);
+  std::vector<std::vector<std::uint8_t>> payloads;
+  for (Unit& unit : std::exchange(units_[layer], {})) {
+    payloads.push_back(
+        payload_of(static_cast<std::uint32_t>(payloads.size()), std::move(unit)));
+  }
+  return payloads;
+}
+
 // 6.14.2 frame_unit( )
-std::vector<std::uint8_t> FrameUnitWriter::finish_unit(std::uint32_t layer) {
-  Unit unit = std::exchange(units_[layer], {});
+std::vector<std::uint8_t> FrameUnitWriter::payload_of(std::uint32_t layer_group,
+                                                      Unit unit) const {
   const std::size_t num_groups = settings_.layer_group_size.size();
-  assert(unit.frames.size() == 1 || (num_groups == 1 && !unit.frames.empty()));
   BitWriter w;
   w.ue(unit.frames.front().frame);
   if (is_open_ended_) w.flag(false);  // gof_end_flag
-  w.ue(unit.layer_group);
-  if (num_groups == 1) w.ue(static_cast<std::uint32_t>(unit.frames.size() - 1));
+  w.ue(layer_group);
+  w.ue(static_cast<std::uint32_t>(unit.frames.size() - 1));
   for (const UnitFrame& frame : unit.frames) {
-    if (settings_.max_earlier_distance == 0 || unit.layer_group > 0 || frame.frame == 0) {
+    if (settings_.max_earlier_distance == 0 || layer_group > 0 || frame.frame == 0) {
       continue;
     }
     w.flag(frame.distance > 0);  // earlier_flag
@@ -149,10 +170,11 @@ std::vector<std::uint8_t> FrameUnitWriter::finish_unit(std::uint32_t layer) {
     w.flag(frame.is_repeated);
   }
   w.byte_alignment();
-  if (settings_.frame_hash_flag && unit.layer_group + 1 == num_groups) {
-    for (const UnitFrame& frame : unit.frames) {
-      if (!frame.is_repeated) w.u(32, frame.crc);
-    }
+  for (const UnitFrame& frame : unit.frames) {
+    if (!settings_.frame_hash_flag || frame.is_repeated) continue;
+    const bool is_whole =
+        layer_group + 1 == num_groups || (frame.frame == 0 && settings_.rest.order_flag);
+    if (is_whole) w.u(32, frame.crc);
   }
   std::vector<std::uint8_t> payload = w.take();
   if (!unit.section) return payload;
@@ -185,12 +207,17 @@ InterGofPayloads write_inter_gof(const InterGof& gof, const OrderedMesh& mesh,
   payloads.first = write_inter_gof_unit(gof, gof, mesh.topology());
   FrameUnitWriter writer(mesh, gof);
   const FrameOrder order(gof.pattern, gof.num_frames);
-  // A unit ends after the units of lower temporal layers, which its frames may need.
+  // Units end after those of lower temporal layers, which their frames may need.
   const auto finish_units = [&](std::uint32_t highest_layer) {
     for (std::uint32_t t = 0; t <= highest_layer; ++t) {
-      if (writer.unit_frames(t) > 0) payloads.frames.push_back(writer.finish_unit(t));
+      if (writer.unit_frames(t) == 0) continue;
+      for (std::vector<std::uint8_t>& unit : writer.finish_units(t)) {
+        payloads.frames.push_back(std::move(unit));
+      }
     }
   };
+  // Layer groups of the last frame of each temporal layer that repeats no other.
+  std::vector<std::uint32_t> groups_of_layer(gof.pattern.temporal_layers);
   for (std::uint32_t place = 0; place < gof.num_frames; ++place) {
     const InterFrame& frame = (*gof.frames)[order[place].frame];
     if (frame.layer_groups == 0 && !frame.repeated) continue;
@@ -198,8 +225,10 @@ InterGofPayloads write_inter_gof(const InterGof& gof, const OrderedMesh& mesh,
     if (writer.unit_frames(layer) == frames_per_unit) finish_units(layer);
     if (frame.repeated) {
       writer.repeat(order[place], place - order.place_of(*frame.repeated));
-      if (gof.layer_group_size.size() > 1) finish_units(layer);
       continue;
+    }
+    if (std::exchange(groups_of_layer[layer], frame.layer_groups) > frame.layer_groups) {
+      finish_units(layer);
     }
     writer.start_frame(place, order[place]);
     if (frame.reference) writer.set_reference(place - order.place_of(*frame.reference));
@@ -210,7 +239,7 @@ InterGofPayloads write_inter_gof(const InterGof& gof, const OrderedMesh& mesh,
       if (place == 0 && gof.rest.order_flag) {
         write_first(writer, mesh, frame);
         writer.end_group(frame.frame_crc.value_or(FrameCrc{}).crc);
-        continue;
+        break;
       }
       const std::uint32_t end = first + gof.layer_group_size[j];
       for (const std::uint32_t v : mesh.vertices_of_layers(first, end)) {
@@ -221,7 +250,6 @@ InterGofPayloads write_inter_gof(const InterGof& gof, const OrderedMesh& mesh,
       }
       first = end;
       writer.end_group(frame.frame_crc.value_or(FrameCrc{}).crc);
-      if (gof.layer_group_size.size() > 1) finish_units(layer);
     }
   }
   finish_units(gof.pattern.temporal_layers - 1);

@@ -38,9 +38,8 @@ class FrameUnitWriter {
   // Starts a frame. Calls for each frame, in coding order: start_frame(), with its place, and
   // for each layer group start_group(), the vertices of its layers in mesh order except those
   // that patches move alone, and end_group(). If the GOF has patches, set_patches() comes
-  // second in each frame but the first. finish_unit() comes after each layer group or, if there
-  // is only one, after one or more frames of a temporal layer; in an open-ended stream, before
-  // a frame of another temporal layer.
+  // second in each frame but the first. finish_units() comes after one or more frames of a
+  // temporal layer; in an open-ended stream, before a frame of another temporal layer.
   void start_frame(std::uint32_t place, const FramePlace& frame);
   // Sets the distance, in places, of the earlier frame that predicts this one instead of its
   // references.
@@ -60,14 +59,15 @@ class FrameUnitWriter {
   void write(std::int32_t residual);
   // Ends a layer group. frame_crc: used in the last group if the GOF has hashes of frames.
   void end_group(std::uint32_t frame_crc = 0);
-  // Return the number of frames in the unit of a temporal layer, and the bytes of its section
-  // so far.
-  std::size_t unit_frames(std::uint32_t layer) const { return units_[layer].frames.size(); }
-  std::size_t unit_bytes(std::uint32_t layer) const {
-    return units_[layer].section ? units_[layer].section->size() : 0;
+  // Return the number of frames in the units of a temporal layer, and the bytes of their
+  // sections so far.
+  std::size_t unit_frames(std::uint32_t layer) const {
+    return units_[layer].empty() ? 0 : units_[layer][0].frames.size();
   }
-  // Ends the unit of a temporal layer, which must have frames, and returns its payload.
-  std::vector<std::uint8_t> finish_unit(std::uint32_t layer);
+  std::size_t unit_bytes(std::uint32_t layer) const;
+  // Ends the units of a temporal layer, which must have frames, and returns their payloads by
+  // ascending layer group.
+  std::vector<std::vector<std::uint8_t>> finish_units(std::uint32_t layer);
 
  private:
   struct UnitFrame {
@@ -78,14 +78,12 @@ class FrameUnitWriter {
   };
 
   struct Unit {
-    std::uint32_t layer_group = 0;
     std::vector<UnitFrame> frames;
     std::optional<SectionWriter> section;
   };
 
-  Unit& unit_of(const FramePlace& frame) {
-    return units_[settings_.pattern.temporal_layer(frame.depth)];
-  }
+  Unit& unit_of(const FramePlace& frame, std::uint32_t layer_group);
+  std::vector<std::uint8_t> payload_of(std::uint32_t layer_group, Unit unit) const;
   void write_patches();
 
   const InterSettings& settings_;
@@ -95,9 +93,10 @@ class FrameUnitWriter {
   FramePatches patches_;  // patches of the frame
   std::uint32_t reference_distance_ =
       0;  // places; 0: the frame has the references of its pattern
-  std::uint32_t frame_ = 0;
-  std::vector<Unit> units_;  // [temporal layer]
-  Unit* unit_ = nullptr;     // unit of the frame
+  std::uint32_t place_ = 0;
+  FramePlace frame_;
+  std::vector<std::vector<Unit>> units_;  // [temporal layer][layer group]
+  Unit* unit_ = nullptr;                  // unit of the frame and layer group
 };
 
 // 6.14.2 gof_end( ): returns the payload of a frame unit that ends a GOF of an open-ended
@@ -110,7 +109,7 @@ struct InterGofPayloads {
   std::vector<std::vector<std::uint8_t>> frames;
 };
 // Writes the whole GOF, with the layer groups that each frame has. frames_per_unit: maximum;
-// frames share a unit only if there is one layer group and they are of one temporal layer.
+// frames share units only if they are of one temporal layer and have the same layer groups.
 InterGofPayloads write_inter_gof(const InterGof& gof, const OrderedMesh& mesh,
                                  std::uint32_t frames_per_unit = 1);
 

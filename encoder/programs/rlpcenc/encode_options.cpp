@@ -118,6 +118,7 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   if (s.usable_kind() == GofKind::kInter) {
     s.inter.temporal_layers = std::exchange(s.main.temporal_layers, 1);
     s.inter.layer_groups = std::max(std::exchange(s.main.layer_groups, 0), 1U);
+    s.inter.layer_cuts = std::exchange(s.main.layer_cuts, {});
     s.inter.rest = std::exchange(s.main.rest, std::nullopt);
   }
   const bool asked =

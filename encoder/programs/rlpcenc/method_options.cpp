@@ -118,7 +118,7 @@ void add_frame_options(CLI::App& app, EncodeCommandLine& line) {
       ->group(frames);
   app.add_option("--frames-per-unit", t.frames_per_unit,
                  "Maximum frames that share a unit of the stream (default: about 4 kB; always "
-                 "one with --low-delay or several --layer-groups)")
+                 "one with --low-delay)")
       ->check(CLI::Range(1, 65536))
       ->option_text("N")
       ->group(frames);
@@ -242,6 +242,20 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
              "Cut points among trajectories, at most one each (default: by size)");
   add_number("--layer-groups", t.layer_groups, 255,
              "Cut points among vertex layers, at most one each (default: by size)");
+  app.add_option_function<std::vector<std::uint32_t>>(
+         "--layer-cuts",
+         [&t](const std::vector<std::uint32_t>& cuts) {
+           t.layer_cuts = cuts;
+           t.layer_groups = static_cast<std::uint32_t>(cuts.size()) + 1;
+         },
+         "Instead: vertices up to each cut but the last, for example 500,1000,2000; the "
+         "nearest "
+         "ends of layers are taken")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber)
+      ->option_text("V,...")
+      ->group(tools)
+      ->excludes("--layer-groups");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "common/codec/kinds/inter/inter_contexts.h"
 
 #include <type_traits>
+#include <utility>
 
 namespace rlpc {
 
@@ -12,16 +13,25 @@ InterContexts::InterContexts(const OrderedMesh& mesh, std::size_t num_layer_grou
     : mesh_(mesh), num_layer_groups_(num_layer_groups), states_(num_depths + 1) {}
 
 // 9.8.6 StartFrameContexts( )
-void InterContexts::start_frame(std::uint32_t place, std::uint32_t depth) {
+void InterContexts::start_group(std::uint32_t place, std::uint32_t depth,
+                                std::size_t layer_group) {
+  if (last_use_) frames_.erase(*last_use_);
+  last_use_.reset();
+  group_ = layer_group;
   is_first_ = place == 0;
   state_ = &states_[is_first_ ? 0 : depth + 1];
   if (state_->models.empty()) {
     state_->models.assign(num_layer_groups_, {});
     state_->mean.assign(mesh_.num_layers(), 256);
-    state_->magnitude.assign(mesh_.num_vertices(), 0);
   }
-  before_ = state_->magnitude;
-  std::fill(state_->magnitude.begin(), state_->magnitude.end(), std::uint16_t{0});
+  Frame& frame = frames_[place];
+  if (layer_group == 0) {
+    frame.magnitude.assign(mesh_.num_vertices(), 0);
+    frame.before = std::exchange(state_->latest, place);
+  }
+  magnitude_ = &frame.magnitude;
+  before_ = frame.before ? &frames_.at(*frame.before).magnitude : nullptr;
+  if (layer_group + 1 == num_layer_groups_) last_use_ = frame.before;
 }
 
 // 9.8.6 StartFrameVertex( v )
@@ -34,14 +44,15 @@ void InterContexts::start(std::uint32_t v) {
   layer_mean_ = &state_->mean[layer];
   ring_mean_ = mean_magnitude(mesh_.ring(v), *layer_mean_);
   outer_mean_ = mean_magnitude(mesh_.outer_ring(v), ring_mean_);
-  before_mean_ = is_first_ ? *layer_mean_ : (std::uint32_t{before_[v]} << 8) / 3;
+  before_mean_ = before_ == nullptr ? 0 : (std::uint32_t{(*before_)[v]} << 8) / 3;
+  if (is_first_) before_mean_ = *layer_mean_;
 }
 
 std::uint32_t InterContexts::mean_magnitude(std::span<const std::uint32_t> ring,
                                             std::uint32_t otherwise) const {
   if (ring.empty()) return otherwise;
   std::uint32_t sum = 0;
-  for (const std::uint32_t u : ring) sum += state_->magnitude[u];
+  for (const std::uint32_t u : ring) sum += (*magnitude_)[u];
   return static_cast<std::uint32_t>((std::uint64_t{sum} << 8) / (3 * ring.size()));
 }
 
@@ -51,7 +62,7 @@ void InterContexts::update(std::int32_t residual) {
   const std::uint32_t clipped = std::min(magnitude, kMaxMagnitude);
   latest_mean_ = axis_ == 0 ? clipped << 8 : (latest_mean_ + (clipped << 8)) >> 1;
   *layer_mean_ = update_mean(*layer_mean_, magnitude, 6);
-  std::uint16_t& sum = state_->magnitude[vertex_];
+  std::uint16_t& sum = (*magnitude_)[vertex_];
   sum = static_cast<std::uint16_t>(sum + clipped);
   ++axis_;
 }

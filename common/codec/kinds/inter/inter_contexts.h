@@ -6,6 +6,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 
 #include "common/codec/bits/residual_models.h"
 #include "common/codec/kinds/inter/inter_gof.h"
@@ -26,10 +28,10 @@ class InterContexts {
   InterContexts(const InterContexts&) = delete;
   InterContexts& operator=(const InterContexts&) = delete;
 
-  // Starts a frame that repeats no other, with its place in coding order and its depth, and
-  // each of its layer groups.
-  void start_frame(std::uint32_t place, std::uint32_t depth);
-  void start_group(std::size_t layer_group) { group_ = layer_group; }
+  // Starts a layer group of a frame that repeats no other, with its place in coding order and
+  // its depth. Calls for a frame are in ascending order of layer groups, and those for the
+  // frames of a depth and layer group in coding order.
+  void start_group(std::uint32_t place, std::uint32_t depth, std::size_t layer_group);
   // Starts a vertex, whose residuals follow axis by axis.
   void start(std::uint32_t v);
 
@@ -60,14 +62,22 @@ class InterContexts {
   struct State {
     Vector<std::array<ResidualModels, kFrameClasses>> models;  // [layer group][class]
     Vector<std::uint32_t> mean;                                // FrameLayerMean, [num_layers]
-    Vector<std::uint16_t> magnitude;  // [num_vertices] last frame, sum of the axes
+    std::optional<std::uint32_t> latest;                       // LatestFrame, its place
+  };
+  // Frame to whose residuals contexts refer.
+  struct Frame {
+    Vector<std::uint16_t> magnitude;      // FrameMagnitude, [num_vertices]
+    std::optional<std::uint32_t> before;  // FrameBefore, its place
   };
 
   const OrderedMesh& mesh_;
   std::size_t num_layer_groups_;
-  Vector<State> states_;          // [1 + num_depths]: first frame, then other frames by depth
-  State* state_ = nullptr;        // state of the current frame
-  Vector<std::uint16_t> before_;  // FrameMagnitudeBefore
+  Vector<State> states_;    // [1 + num_depths]: first frame, then other frames by depth
+  State* state_ = nullptr;  // state of the current frame
+  Map<std::uint32_t, Frame> frames_;            // by place
+  std::optional<std::uint32_t> last_use_;       // frame to which only the current group refers
+  Vector<std::uint16_t>* magnitude_ = nullptr;  // of the current frame
+  const Vector<std::uint16_t>* before_ = nullptr;  // of the frame before; null: none
   bool is_first_ = true;
   std::size_t group_ = 0;
   // State of the current vertex.

@@ -92,25 +92,29 @@ void ClosedLoop::adapt(Layer& layer, std::size_t first, std::size_t end) {
   }
 }
 
-void ClosedLoop::end_unit(std::uint32_t number, std::vector<EncodedSpan::Unit>& units) {
+std::vector<EncodedSpan::Unit> ClosedLoop::end_units(std::uint32_t number) {
+  std::vector<EncodedSpan::Unit> units;
   const auto temporal_layer = [&](std::uint32_t place) {
     return settings_.pattern.temporal_layer(order_[place].depth);
   };
   const std::uint32_t layer = temporal_layer(number);
   const std::uint32_t next = number + 1;
   const bool is_last = next == order_.num_frames();
-  const bool may_go_on = settings_.layer_group_size.size() == 1 && number > 0 && !is_last &&
-                         (!is_open_ended_ || temporal_layer(next) == layer);
+  const bool may_go_on =
+      number > 0 && !is_last && (!is_open_ended_ || temporal_layer(next) == layer);
   if (may_go_on && writer_.unit_frames(layer) < limits_.frames &&
       writer_.unit_bytes(layer) < limits_.bytes) {
-    return;
+    return units;
   }
   // Units of lower temporal layers, which its frames may need, end before it.
   const std::uint32_t end = is_last ? settings_.pattern.temporal_layers : layer + 1;
   for (std::uint32_t t = 0; t < end; ++t) {
     if (writer_.unit_frames(t) == 0) continue;
-    units.push_back({UnitType::kFrame, writer_.finish_unit(t), t});
+    for (std::vector<std::uint8_t>& unit : writer_.finish_units(t)) {
+      units.push_back({UnitType::kFrame, std::move(unit), t});
+    }
   }
+  return units;
 }
 
 std::size_t ClosedLoop::unit_bytes() const {
@@ -133,9 +137,7 @@ std::vector<EncodedSpan::Unit> ClosedLoop::repeat(std::uint32_t distance,
   recon_.positions(positions);
   if (coded != nullptr) *coded = frame;
   writer_.repeat(place, distance);
-  std::vector<EncodedSpan::Unit> units;
-  end_unit(number, units);
-  return units;
+  return end_units(number);
 }
 
 std::vector<EncodedSpan::Unit> ClosedLoop::code_in_order(const RestEncoding& first,
@@ -150,10 +152,8 @@ std::vector<EncodedSpan::Unit> ClosedLoop::code_in_order(const RestEncoding& fir
   writer_.start_group(0);
   writer_.write_positions(mesh_.rest_order(), first.residual, first.counterparts);
   writer_.end_group(settings_.frame_hash_flag ? crc32_of_positions(positions) : 0);
-  std::vector<EncodedSpan::Unit> units;
-  end_unit(0, units);
-  if (coded == nullptr) return units;
-  coded->layer_groups = 1;
+  if (coded == nullptr) return end_units(0);
+  coded->layer_groups = static_cast<std::uint32_t>(settings_.layer_group_size.size());
   coded->residual = CompactResiduals(first.residual.size());
   coded->expected.assign(mesh_.num_vertices(), 0);
   for (std::size_t i = 0; i < first.residual.size(); ++i) {
@@ -161,13 +161,12 @@ std::vector<EncodedSpan::Unit> ClosedLoop::code_in_order(const RestEncoding& fir
   }
   coded->residual.sort();
   coded->counterparts = first.counterparts;
-  return units;
+  return end_units(0);
 }
 
 std::vector<EncodedSpan::Unit> ClosedLoop::code(std::span<const double> xyz,
                                                 std::span<std::int32_t> positions,
                                                 InterFrame* coded, std::uint32_t distance) {
-  std::vector<EncodedSpan::Unit> units;
   const std::uint32_t number = recon_.place();
   FramePlace place = order_[number];
   if (distance > 0) place = place.from(order_[number - distance].frame);
@@ -218,9 +217,8 @@ std::vector<EncodedSpan::Unit> ClosedLoop::code(std::span<const double> xyz,
     }
     const std::uint32_t crc = settings_.frame_hash_flag ? crc32_of_positions(positions) : 0;
     writer_.end_group(crc);
-    end_unit(number, units);
   }
-  return units;
+  return end_units(number);
 }
 
 }  // namespace rlpc

@@ -71,7 +71,7 @@ class ClosedLoop {
   void choose(Layer& layer, std::span<const double> xyz, InterFrame* coded);
   void adapt(Layer& layer, std::size_t first, std::size_t end);
   // Ends the unit if necessary; called after a frame, or after each of several layer groups.
-  void end_unit(std::uint32_t number, std::vector<EncodedSpan::Unit>& units);
+  std::vector<EncodedSpan::Unit> end_units(std::uint32_t number);
 
   const OrderedMesh& mesh_;
   const InterSettings& settings_;

@@ -59,7 +59,7 @@ std::shared_ptr<const RestEncoding> code_first_frame(const OrderedMesh& mesh,
                                                      const EncoderSettings& settings,
                                                      std::span<const double> xyz) {
   const RestTools tools = settings.inter.rest.value_or(RestTools::kCounterparts);
-  if (tools == RestTools::kPrediction || frame_settings.layer_group_size.size() > 1) return {};
+  if (tools == RestTools::kPrediction) return {};
   const bool exact = frame_settings.exact_flag;
   const RestChoices choices{.few = settings.preset == Preset::kFast,
                             .counterparts = tools == RestTools::kCounterparts,

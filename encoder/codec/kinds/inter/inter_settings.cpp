@@ -65,7 +65,7 @@ InterSettings choose_frame_settings(const SequenceHeader& header,
   s.frame_hash_flag =
       (header.open_end_flag || settings.low_delay) && settings.hash_mode != HashMode::kNone;
   s.layer_group_size =
-      layer_group_sizes(layers, settings.inter.layer_groups, settings.inter.layer_groups);
+      layer_group_sizes(layers, settings.inter.layer_groups, settings.inter.layer_cuts);
   s.layer_step.assign(layers.num_layers(), kMaxLayerStep);
   return s;
 }

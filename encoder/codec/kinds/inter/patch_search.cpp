@@ -105,8 +105,7 @@ FramePatches PatchSearch::choose(std::span<const double> xyz, std::uint32_t dept
   std::array<Costs, 2> residual_costs;
   for_each(residual_costs.size(), [&](std::size_t i) {
     InterContexts& mode_contexts = i == 0 ? neighbour_contexts_ : motion_contexts_;
-    mode_contexts.start_frame(recon.place(), depth);
-    residual_costs[i] = costs(mode_contexts, i == 0 ? wanted_ : left_);
+    residual_costs[i] = costs(mode_contexts, recon.place(), depth, i == 0 ? wanted_ : left_);
   });
   choose_modes(residual_costs[0], residual_costs[1], contexts, patches);
   return patches;
@@ -165,12 +164,13 @@ double PatchSearch::cost_alone(std::size_t patch) const {
   return error / kLambda;
 }
 
-PatchSearch::Costs PatchSearch::costs(InterContexts& contexts,
+PatchSearch::Costs PatchSearch::costs(InterContexts& contexts, std::uint32_t place,
+                                      std::uint32_t depth,
                                       const std::vector<double>& wanted) const {
   Costs costs(vertices_.size(), 0.0);
   std::uint32_t first = 0;
   for (std::size_t j = 0; j < settings_.layer_group_size.size(); ++j) {
-    contexts.start_group(j);
+    contexts.start_group(place, depth, j);
     const std::uint32_t end = first + settings_.layer_group_size[j];
     for (const std::uint32_t v : mesh_.vertices_of_layers(first, end)) {
       contexts.start(v);

@@ -42,7 +42,8 @@ class PatchSearch {
   double error(std::size_t patch, std::span<const double> xyz, std::uint32_t depth,
                const InterRecon& recon, const PatchMotion& motion,
                std::vector<double>* left) const;
-  Costs costs(InterContexts& contexts, const std::vector<double>& wanted) const;
+  Costs costs(InterContexts& contexts, std::uint32_t place, std::uint32_t depth,
+              const std::vector<double>& wanted) const;
 
   const OrderedMesh& mesh_;
   const InterSettings& settings_;

@@ -23,8 +23,10 @@ struct UnitsOfText {
   std::vector<std::uint32_t> place_of;
   std::vector<std::uint32_t> groups;  // FrameGroups
   std::vector<bool> repeats;
-  std::vector<std::int64_t> last_place;  // LastPlaceOfLayer
-  std::vector<std::uint32_t> unit;       // UnitFrames
+  std::uint32_t unit_place = 0;        // UnitPlace
+  std::int64_t last_place = -1;        // LastPlace
+  std::vector<std::uint32_t> unit;     // UnitFrames
+  std::vector<std::uint32_t> to_come;  // FramesToCome
 
   void start() {
     const FrameOrder made(pattern, num_frames);
@@ -35,21 +37,19 @@ struct UnitsOfText {
     }
     groups.assign(num_frames, 0);
     repeats.assign(num_frames, false);
-    last_place.assign(pattern.temporal_layers, -1);
   }
   std::uint32_t layer(std::uint32_t f) const {
     const std::int64_t deeper = std::int64_t{pattern.num_depths()} - pattern.temporal_layers;
     return static_cast<std::uint32_t>(
         std::max<std::int64_t>(0, order[place_of[f]].depth - deeper));
   }
-  std::int64_t last_of_all() const {
-    return *std::max_element(last_place.begin(), last_place.end());
-  }
-  bool find_unit_frames(std::uint32_t frame_idx, std::uint32_t more) {
+  bool is_whole(std::uint32_t f) const { return repeats[f] || groups[f] == num_groups; }
+  bool find_unit_frames(std::uint32_t frame_idx, std::uint32_t group, std::uint32_t more) {
     unit.clear();
     for (std::uint32_t p = place_of[frame_idx]; p < num_frames && unit.size() <= more; ++p) {
-      if (layer(order[p].frame) == layer(frame_idx)) {
-        unit.push_back(order[p].frame);
+      const std::uint32_t f = order[p].frame;
+      if (layer(f) == layer(frame_idx)) {
+        if (f == frame_idx || group == 0 || !is_whole(f)) unit.push_back(f);
       } else if (open_end) {
         break;
       }
@@ -57,10 +57,11 @@ struct UnitsOfText {
     return unit.size() > more;
   }
   bool is_next(std::uint32_t frame_idx, std::uint32_t group) const {
-    const std::int64_t place = place_of[frame_idx];
-    if (place < last_place[layer(frame_idx)] || groups[frame_idx] != group) return false;
-    if (open_end && place < last_of_all()) return false;
-    return !repeats[frame_idx];
+    for (const std::uint32_t f : unit) {
+      if (groups[f] != group || is_whole(f)) return false;
+    }
+    if (open_end && group == 0) return place_of[frame_idx] > last_place;
+    return !open_end || unit == to_come;
   }
   bool may_follow(std::uint32_t frame_idx, std::uint32_t group) const {
     if (!is_next(frame_idx, group)) return false;
@@ -70,7 +71,7 @@ struct UnitsOfText {
     for (std::uint32_t i = 0; i < last; ++i) {
       const std::uint32_t f = order[i].frame;
       const bool needed = layer(f) < own || (layer(f) == own && i < place);
-      if (needed && groups[f] <= group) return false;
+      if (needed && groups[f] <= group && !is_whole(f)) return false;
     }
     return true;
   }
@@ -84,11 +85,18 @@ struct UnitsOfText {
       const std::uint32_t f = order[i].frame;
       if (layer(f) > own) continue;
       const std::uint32_t end = place_of[layer(f) == own ? frame_idx : unit.back()];
-      surplus[layer(f)] += (groups[f] > group ? 1 : 0) - (i < end ? 1 : 0);
+      surplus[layer(f)] += (groups[f] > group || is_whole(f) ? 1 : 0) - (i < end ? 1 : 0);
     }
     return *std::min_element(surplus.begin(), surplus.end()) >= 0;
   }
-  void end_unit() { last_place[layer(unit[0])] = place_of[unit.back()]; }
+  void end_unit() {
+    unit_place = place_of[unit[0]];
+    last_place = std::max<std::int64_t>(last_place, place_of[unit.back()]);
+    to_come.clear();
+    for (const std::uint32_t f : unit) {
+      if (!is_whole(f)) to_come.push_back(f);
+    }
+  }
 };
 
 FramePatternRecipe recipe_of(const FramePattern& pattern) {
@@ -133,8 +141,7 @@ class RandomUnits {
   int num_refused = 0;
   int num_stand_ins = 0;  // units refused although enough frames have their layer group
 
-  // Parses any unit, or a layer group of the first frame of a temporal layer that lacks it and
-  // does not precede a frame of a unit before.
+  // Parses any unit, or a layer group of the first frame of a temporal layer that lacks it.
   void step() {
     std::uint32_t frame_idx = below(text_.num_frames);
     std::uint32_t group = below(text_.num_groups);
@@ -147,13 +154,15 @@ class RandomUnits {
       }
       for (std::uint32_t p = 0; p < text_.num_frames; ++p) {
         const std::uint32_t f = text_.order[p].frame;
-        if (p < text_.last_place[t] || text_.layer(f) != t || text_.groups[f] != group)
-          continue;
+        if (text_.is_whole(f) || text_.layer(f) != t || text_.groups[f] != group) continue;
         frame_idx = f;
         break;
       }
     }
-    add(frame_idx, group, text_.num_groups == 1 ? below(3) : 0);
+    const bool is_rest = group > 0 && !text_.to_come.empty() && below(2) == 0;
+    if (is_rest) frame_idx = text_.to_come[0];
+    add(frame_idx, group,
+        is_rest ? static_cast<std::uint32_t>(text_.to_come.size()) - 1 : below(3));
   }
 
  private:
@@ -171,8 +180,8 @@ class RandomUnits {
   void add(std::uint32_t frame_idx, std::uint32_t group, std::uint32_t more) {
     FrameRecipe recipe(frame_idx, group);
     if (text_.open_end) recipe.gof_end_flag = false;
-    if (text_.num_groups == 1) recipe.unit_frames_minus1 = more;
-    if (!text_.find_unit_frames(frame_idx, more)) {
+    recipe.unit_frames_minus1 = more;
+    if (!text_.find_unit_frames(frame_idx, group, more)) {
       ++num_refused;
       return expect_invalid(units_->frame(recipe.payload()), "R-FRM-09", "unit_frames_minus1");
     }
@@ -191,12 +200,11 @@ class RandomUnits {
         if (repeats) recipe.earlier.back() = {distance - 1, true};
       }
       if (!is_legal) continue;
-      text_.groups[f] = repeats ? text_.groups[earlier] : group + 1;
+      if (!repeats) text_.groups[f] = group + 1;
       text_.repeats[f] = repeats;
       if (repeats) continue;
       recipe.has_section = true;
-      if (group == 0) contexts_->start_frame(place, text_.order[place].depth);
-      contexts_->start_group(group);
+      contexts_->start_group(place, text_.order[place].depth, group);
       const bool is_last = group + 1 == text_.num_groups;
       recipe.zeros(*contexts_, mesh_.mesh().vertices_of_layers(group, is_last ? 3 : group + 1));
     }
@@ -220,9 +228,8 @@ class RandomUnits {
 
   // DecodeCompleteFrames( )
   void check_completeness() {
-    std::int64_t end = text_.last_of_all();
-    const std::uint32_t f = text_.order[static_cast<std::size_t>(end)].frame;
-    if (text_.groups[f] == text_.num_groups || text_.repeats[f]) ++end;
+    std::uint32_t end = text_.unit_place;
+    while (end <= text_.last_place && text_.is_whole(text_.order[end].frame)) ++end;
     EXPECT_EQ(units_->parser().complete_places(), end);
   }
 
@@ -264,11 +271,11 @@ TEST(ParseFrameUnits, FollowEachOtherAsTheTextSays) {
 // temporal layer, cannot have the second group before frame 4.
 TEST(ParseFrameUnits, RepeatedFramesDoNotStandInForEarlierOnes) {
   InterGofUnits units(high_header(9, 9), kSquares);
-  ASSERT_TRUE(units.gof({0x89, 0xE4, 0x9C, 0x00, 0x03, 0x25, 0xFF, 0xF0}));
+  ASSERT_TRUE(units.gof({0x89, 0xE4, 0x9C, 0x00, 0x03, 0x25, 0xFF, 0xE8}));
   const std::vector<Bytes> legal{
-      {0xC0, 0xFF}, {0xA0, 0xF5}, {0x2C, 0xFE}, {0x13, 0x96}, {0x70, 0xFE}};
+      {0xE0, 0xFF}, {0xA8, 0xF5}, {0x2E, 0xFE}, {0x13, 0xCB}, {0x78, 0xFE}};
   for (const Bytes& unit : legal) ASSERT_TRUE(units.frame(unit));
-  expect_invalid(units.frame(Bytes{0x68, 0xEF}), "R-FRM-03", "frame_unit");
+  expect_invalid(units.frame(Bytes{0x6A, 0xEF}), "R-FRM-03", "frame_unit");
 }
 
 TEST(ParseFrameUnits, StartWithTheirFrame) {
@@ -308,8 +315,7 @@ struct CutGof {
   bool keeps(std::uint32_t place, std::uint32_t group) {
     const FramePlace& at = units.parser().order()[place];
     FrameRecipe recipe(at.frame, group);
-    if (group == 0) contexts.start_frame(place, at.depth);
-    contexts.start_group(group);
+    contexts.start_group(place, at.depth, group);
     recipe.zeros(contexts, units.mesh().vertices_of_layers(group, group + 1));
     EXPECT_TRUE(units.frame(recipe.payload()));
     return units.parser().last_unit().has_value();

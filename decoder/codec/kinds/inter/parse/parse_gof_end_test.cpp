@@ -30,8 +30,7 @@ struct OpenGof {
       FrameRecipe recipe(at.frame);
       recipe.gof_end_flag = false;
       recipe.unit_frames_minus1 = 0;
-      contexts.start_frame(place, at.depth);
-      contexts.start_group(0);
+      contexts.start_group(place, at.depth, 0);
       recipe.zeros(contexts, units.mesh().vertices_of_layers(0, 3));
       EXPECT_TRUE(units.frame(recipe.payload()));
     }

@@ -37,7 +37,6 @@ Result<bool> InterGofParser::gof(BitReader& r, const GofHeader& gof_header) {
   frames_.resize(gof_.num_frames);
   contexts_.emplace(mesh_, gof_.layer_group_size.size(), gof_.pattern.num_depths());
   order_.emplace(gof_.pattern, gof_.num_frames);
-  next_place_of_layer_.assign(gof_.pattern.temporal_layers, 0);
   first_lacking_.assign(gof_.pattern.temporal_layers,
                         Vector<std::uint32_t>(gof_.layer_group_size.size()));
   end_layer_group_ = layer_groups_that_stay(gof_.layer_group_size, cut_);
@@ -113,8 +112,11 @@ Vector<std::uint32_t> InterGofParser::unit_places(const SliceEntry& unit) const 
   Vector<std::uint32_t> places;
   for (std::uint32_t place = order_->place_of(unit.frame_idx);
        place < order_->num_frames() && places.size() < unit.num_frames; ++place) {
-    if (gof_.pattern.temporal_layer((*order_)[place].depth) == unit.temporal_layer_idx) {
-      places.push_back(place);
+    const FramePlace& at = (*order_)[place];
+    if (gof_.pattern.temporal_layer(at.depth) == unit.temporal_layer_idx) {
+      const bool is_left_out =
+          unit.layer_group_idx > 0 && !places.empty() && is_whole(frames_[at.frame]);
+      if (!is_left_out) places.push_back(place);
     } else if (header_.open_end_flag) {
       break;
     }
@@ -126,10 +128,16 @@ std::uint32_t InterGofParser::first_lacking(std::uint32_t layer, std::uint32_t g
   std::uint32_t& place = first_lacking_[layer][group];
   while (place < order_->num_frames() &&
          (gof_.pattern.temporal_layer((*order_)[place].depth) != layer ||
-          frame_at(place).layer_groups > group)) {
+          frame_at(place).layer_groups > group || is_whole(frame_at(place)))) {
     ++place;
   }
   return place;
+}
+
+bool InterGofParser::continues(const SliceEntry& unit,
+                               std::span<const std::uint32_t> places) const {
+  if (unit.layer_group_idx == 0) return places.front() >= next_place_;
+  return std::equal(places.begin(), places.end(), to_come_.begin(), to_come_.end());
 }
 
 // 8.19.1 FrameMayFollow( )
@@ -138,14 +146,16 @@ bool InterGofParser::may_follow(const SliceEntry& unit, std::span<const std::uin
   const std::uint32_t last = places.back();
   const std::uint32_t group = unit.layer_group_idx;
   const std::uint32_t layer = unit.temporal_layer_idx;
-  const InterFrame& frame = frames_[unit.frame_idx];
-  const std::uint32_t next = header_.open_end_flag ? next_place_ : next_place_of_layer_[layer];
-  if (first + 1 < next || frame.layer_groups != group || frame.repeated) return false;
+  for (const std::uint32_t place : places) {
+    const InterFrame& frame = frame_at(place);
+    if (frame.layer_groups != group || is_whole(frame)) return false;
+  }
+  if (header_.open_end_flag && !continues(unit, places)) return false;
   if (first_lacking(layer, group) < first) return false;
   for (std::uint32_t t = 0; t < layer; ++t) {
     if (first_lacking(t, group) < last) return false;
   }
-  next_place_of_layer_[layer] = last + 1;
+  unit_place_ = first;
   next_place_ = std::max(next_place_, last + 1);
   return true;
 }
@@ -176,10 +186,14 @@ void InterGofParser::frames_of_group(BitReader& r, const FrameUnitStart& start,
     if (r.error()) return;
   }
   r.byte_alignment();
-  if (gof_.frame_hash_flag && group + 1 == gof_.layer_group_size.size()) {
-    for (const std::uint32_t place : coded) {
+  to_come_.clear();
+  for (const std::uint32_t place : coded) {
+    InterFrame& frame = frame_at(place);
+    if (!is_whole(frame)) {
+      to_come_.push_back(place);
+    } else if (gof_.frame_hash_flag) {
       const std::uint64_t at = r.bit_pos();
-      frame_at(place).frame_crc = FrameCrc{r.u(32, "frame_crc"), at};
+      frame.frame_crc = FrameCrc{r.u(32, "frame_crc"), at};
       if (r.error()) return;
     }
   }
@@ -198,13 +212,11 @@ bool InterGofParser::frame_start(BitReader& r, const SliceEntry& unit, std::uint
       gof_.max_earlier_distance > 0 && unit.layer_group_idx == 0 && place > 0;
   if (may_be_earlier && r.flag("earlier_flag")) earlier_frame(r, place);
   if (r.error()) return false;
-  if (!frame.repeated) {
-    frame.layer_groups = unit.layer_group_idx + 1;
-    return true;
-  }
-  // A repetition has the same layer groups.
-  frame.layer_groups = frames_[*frame.repeated].layer_groups;
-  return false;
+  if (frame.repeated) return false;
+  const bool has_all = place == 0 && gof_.rest.order_flag;
+  frame.layer_groups = has_all ? static_cast<std::uint32_t>(gof_.layer_group_size.size())
+                               : unit.layer_group_idx + 1;
+  return true;
 }
 
 // 6.14.2 earlier_frame( )
@@ -228,14 +240,14 @@ void InterGofParser::earlier_frame(BitReader& r, std::uint32_t place) {
 }
 
 std::uint32_t InterGofParser::complete_places() const {
-  if (next_place_ == 0) return 0;
-  const InterFrame& last = frames_[(*order_)[next_place_ - 1].frame];
-  const bool is_complete = last.layer_groups == gof_.layer_group_size.size() || last.repeated;
-  return is_complete ? next_place_ : next_place_ - 1;
+  std::uint32_t place = unit_place_;
+  while (place < next_place_ && is_whole(frames_[(*order_)[place].frame])) ++place;
+  return place;
 }
 
 InterFrame InterGofParser::take_frame(std::uint32_t frame) {
   InterFrame& kept = frames_[frame];
+  if (kept.repeated) kept.layer_groups = frames_[*kept.repeated].layer_groups;
   if (kept.layer_groups > 0 && !kept.repeated) {
     memory_bytes_ -=
         memory_of_frame(header_.num_vertices, kept.residual.num_large(), kept.patches.size());
@@ -288,7 +300,6 @@ void InterGofParser::frame_section(BitReader& r, const SliceEntry& unit,
   const std::uint64_t num_vertices = header_.num_vertices;
   const std::uint64_t at = r.bit_pos();
   SectionReader section(r, "frame_section");
-  contexts_->start_group(unit.layer_group_idx);
   for (const std::uint32_t place : places) {
     InterFrame& frame = frame_at(place);
     const std::uint32_t num_patches = place > 0 ? gof_.num_patches : 0;
@@ -298,7 +309,6 @@ void InterGofParser::frame_section(BitReader& r, const SliceEntry& unit,
       if (!has_memory(r, max_bytes + r.remaining_bytes().size(), "frame_section", at)) return;
       frame.residual = CompactResiduals(3 * std::size_t{header_.num_vertices});
       frame.expected.assign(header_.num_vertices, 0);
-      contexts_->start_frame(place, (*order_)[place].depth);
       if (num_patches > 0) {
         patch_contexts_->start_frame((*order_)[place].depth);
         patch_motions(section, frame);
@@ -332,6 +342,7 @@ void InterGofParser::positions_in_order(SectionReader& section, InterFrame& fram
 void InterGofParser::frame_residuals(SectionReader& section, const SliceEntry& unit,
                                      std::uint32_t place) {
   InterFrame& frame = frame_at(place);
+  contexts_->start_group(place, (*order_)[place].depth, unit.layer_group_idx);
   std::uint32_t first = 0;
   for (std::uint32_t j = 0; j < unit.layer_group_idx; ++j) first += gof_.layer_group_size[j];
   const std::uint32_t end = first + gof_.layer_group_size[unit.layer_group_idx];
@@ -349,7 +360,12 @@ void InterGofParser::frame_residuals(SectionReader& section, const SliceEntry& u
   }
 }
 
+// A frame that repeats another has the layer groups that the other has in the end.
 InterGof InterGofParser::finish() {
+  for (std::uint32_t place = 0; place < order_->num_frames(); ++place) {
+    InterFrame& frame = frame_at(place);
+    if (frame.repeated) frame.layer_groups = frames_[*frame.repeated].layer_groups;
+  }
   gof_.frames = make_shared_owned<const Vector<InterFrame>>(std::move(frames_));
   return std::move(gof_);
 }

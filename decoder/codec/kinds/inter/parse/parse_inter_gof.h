@@ -66,10 +66,17 @@ class InterGofParser final : public GofParser {
                        std::uint64_t unit_bit_pos);
   // Returns the places of the frames of a unit; fewer than it declares if the GOF has fewer.
   Vector<std::uint32_t> unit_places(const SliceEntry& unit) const;
+  // Returns whether a frame has all its frame units.
+  bool is_whole(const InterFrame& frame) const {
+    return frame.repeated || frame.layer_groups == gof_.layer_group_size.size();
+  }
   // Returns the first place of a frame of a temporal layer that lacks a layer group, or the
   // number of frames. Takes time in proportion to the frames of the GOF over all calls, since
   // frames only gain layer groups.
   std::uint32_t first_lacking(std::uint32_t layer, std::uint32_t group);
+  // Returns whether the frames of a unit continue those of the units before, as they do in an
+  // open-ended stream.
+  bool continues(const SliceEntry& unit, std::span<const std::uint32_t> places) const;
   bool may_follow(const SliceEntry& unit, std::span<const std::uint32_t> places);
   // Returns false if the frame repeats another.
   bool frame_start(BitReader& r, const SliceEntry& unit, std::uint32_t place);
@@ -91,8 +98,9 @@ class InterGofParser final : public GofParser {
   std::optional<InterContexts> contexts_;
   std::optional<PatchContexts> patch_contexts_;  // none: no patches
   std::optional<FrameOrder> order_;
+  std::uint32_t unit_place_ = 0;                 // UnitPlace
   std::uint32_t next_place_ = 0;                 // LastPlace + 1
-  Vector<std::uint32_t> next_place_of_layer_;    // LastPlaceOfLayer + 1
+  Vector<std::uint32_t> to_come_;                // FramesToCome, by place
   Vector<Vector<std::uint32_t>> first_lacking_;  // [temporal layer][layer group]; lower bounds
   std::uint32_t end_layer_group_ = 0;            // first layer group that the cut drops
   std::uint32_t end_temporal_layer_ = 0;         // first temporal layer that the cut drops

@@ -262,8 +262,7 @@ class Frames {
   // Parses a unit; num_coded: frames whose residuals it has, 0 if it is refused before them.
   Result<bool> parse(FrameRecipe recipe, std::uint32_t num_coded) {
     for (const std::uint32_t end = place_ + num_coded; place_ < end; ++place_) {
-      contexts_.start_frame(place_, 0);
-      contexts_.start_group(0);
+      contexts_.start_group(place_, 0, 0);
       recipe.zeros(contexts_, units_.mesh().vertices_of_layers(0, 3));
     }
     return units_.frame(recipe.payload());

@@ -31,45 +31,50 @@ struct LegalGof {
 // This one has two layer groups and temporal layers, a dyadic pattern, patches and hashes.
 const LegalGof kDyadic{
     5,
-    {{0x97, 0x91, 0x05, 0x41, 0x00, 0x00, 0x04, 0x00, 0x01, 0x8E, 0xEB, 0x69, 0x7C, 0x89, 0x00,
+    {{0x97, 0x91, 0x05, 0x41, 0x00, 0x00, 0x04, 0x00, 0x01, 0x8E, 0xEB, 0x69, 0x7C, 0x88, 0x80,
       0xAF, 0x97, 0x20},
-     {0xC0, 0x00, 0x03, 0xD6, 0x06, 0x85, 0xD9, 0x82, 0x61, 0x17, 0x80, 0xF8, 0x54, 0xC4, 0x60,
+     {0xE0, 0x00, 0x03, 0xD6, 0x06, 0x85, 0xD9, 0x82, 0x61, 0x17, 0x80, 0xF8, 0x54, 0xC4, 0x60,
       0xBE, 0x14, 0xD8, 0x38},
-     {0xA0, 0x12, 0x34, 0x56, 0x78, 0x9B, 0x18, 0x64, 0x57, 0x04, 0xCD, 0x0C, 0x97},
-     {0x2C, 0x90, 0x30, 0xB2, 0xEC, 0x87, 0xCE, 0x93, 0x7B, 0x66, 0xF4,
+     {0xA8, 0x12, 0x34, 0x56, 0x78, 0x9B, 0x18, 0x64, 0x57, 0x04, 0xCD, 0x0C, 0x97},
+     {0x2E, 0x90, 0x30, 0xB2, 0xEC, 0x87, 0xCE, 0x93, 0x7B, 0x66, 0xF4,
       0x75, 0x31, 0x91, 0x13, 0xE1, 0xED, 0x70, 0x3A, 0x9C, 0x1E},
-     {0x2A, 0x00, 0x00, 0x00, 0x01, 0x71, 0x92, 0xBD, 0x2A},
-     {0x7A, 0x00, 0x27, 0xFF, 0x73, 0x6D, 0x37},
-     {0x68, 0xFF, 0xFF, 0xFF, 0xFF, 0x48},
-     {0x5E},
-     {0x24, 0xA4, 0xE5, 0xA7, 0x98, 0x10, 0x55, 0x73}},
-    {15, 1, 5, 1, 5, 2, 5, 1, 1},
+     {0x2A, 0x80, 0x00, 0x00, 0x00, 0x01, 0x71, 0x92, 0xBD, 0x2A},
+     {0x7D, 0x00, 0x27, 0xFF, 0x73, 0x6D, 0x37},
+     {0x6A, 0xFF, 0xFF, 0xFF, 0xFF, 0x48},
+     {0x5F},
+     {0x26, 0xA4, 0xE5, 0xA7, 0x98, 0x10, 0x55, 0x73}},
+    {15, 1, 5, 1, 6, 2, 5, 1, 1},
     {"first_frame 0\nnum_gof_frames_minus1 4\ngof_kind 3\nframe_pattern_idc 2\n"
      "pattern_period_log2 2\ntemporal_layers_minus1 1\nexact_flag 0\n"
      "frame_step_minus1 20 31 65535\ndamping_log2 6\nouter_weight 3\nouter_scale 11\n"
      "learning_flag 1\nprime_log2 5\nframe_hash_flag 1\nmax_earlier_distance 2\n"
      "num_layer_groups_minus1 1\nlayer_group_layers_minus1 1\nlayer_step_minus1 15 9 1\n"
-     "num_patches 3\ncluster_predicted_flag 0\ncluster_idx 2\ncluster_predicted_flag 1 0\n"
+     "rest_order_flag 0\nnum_patches 3\ncluster_predicted_flag 0\ncluster_idx "
+     "2\ncluster_predicted_flag 1 0\n"
      "cluster_idx 0\ncluster_predicted_flag 1 1 1 0\ncluster_idx 1\n"
      "cluster_predicted_flag 1 1",
      // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): lines of one unit
-     "frame_idx 0\nlayer_group_idx 0\n"
+     "frame_idx 0\nlayer_group_idx 0\nunit_frames_minus1 0\n"
      "frame_residual 40 -20 7 3 1 -1 2000 -5 6 9 -8 0 1 4 -3",
-     "frame_idx 0\nlayer_group_idx 1\nframe_crc 305419896\n"
+     "frame_idx 0\nlayer_group_idx 1\nunit_frames_minus1 0\nframe_crc 305419896\n"
      "frame_residual 1 0 -2 3 0 1 5 -1 0 2 2 -1",
-     "frame_idx 4\nlayer_group_idx 0\nearlier_flag 0\npatch_mode 0 1\n"
+     "frame_idx 4\nlayer_group_idx 0\nunit_frames_minus1 0\nearlier_flag 0\npatch_mode 0 1\n"
      "patch_residual 12 -7 3 1 0 0 -2 1 0 0 5 -1\npatch_mode 2\n"
      "patch_residual 4 0 0 300 -1 0 0 2 0 0 -9 1\n"
      "frame_residual 3 0 -1 1 2 0 0 0 0 0 0 0",
-     "frame_idx 4\nlayer_group_idx 1\nframe_crc 1\nframe_residual -1 0 2 2 2 2 2 2 2",
-     "frame_idx 2\nlayer_group_idx 0\nearlier_flag 1\nearlier_distance_minus1 1\n"
+     "frame_idx 4\nlayer_group_idx 1\nunit_frames_minus1 0\nframe_crc 1\nframe_residual -1 0 2 "
+     "2 2 2 2 2 2",
+     "frame_idx 2\nlayer_group_idx 0\nunit_frames_minus1 0\nearlier_flag "
+     "1\nearlier_distance_minus1 1\n"
      "repeat_flag 0\npatch_mode 2\npatch_residual 1 0 0 0 0 0 0 0 0 0 0 0\npatch_mode 2\n"
      "patch_residual 0 0 0 0 0 0 0 0 0 0 0 0\npatch_mode 1\n"
      "patch_residual 0 0 0 0 0 0 0 0 0 0 0 0\nframe_residual 0 1 1",
-     "frame_idx 2\nlayer_group_idx 1\nframe_crc 4294967295\nframe_residual 1 1 1",
-     "frame_idx 1\nlayer_group_idx 0\nearlier_flag 1\nearlier_distance_minus1 0\n"
+     "frame_idx 2\nlayer_group_idx 1\nunit_frames_minus1 0\nframe_crc "
+     "4294967295\nframe_residual 1 1 1",
+     "frame_idx 1\nlayer_group_idx 0\nunit_frames_minus1 0\nearlier_flag "
+     "1\nearlier_distance_minus1 0\n"
      "repeat_flag 1",
-     "frame_idx 3\nlayer_group_idx 0\nearlier_flag 0\npatch_mode 0 0 2\n"
+     "frame_idx 3\nlayer_group_idx 0\nunit_frames_minus1 0\nearlier_flag 0\npatch_mode 0 0 2\n"
      "patch_residual 1 1 1 1 1 1 1 1 1 1 1 1\n"
      "frame_residual 0 0 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1"}};
 
@@ -356,7 +361,7 @@ TEST(ParseInterGof, SectionsMustNotStartWithOnes) {
 
 TEST(ParseInterGof, AlignmentIsZero) {
   // The first alignment bit of each unit; a multiple of 8 if there is none.
-  const std::vector<std::vector<std::uint64_t>> at{{114, 2, 4, 7, 8, 9, 6, 7, 7},
+  const std::vector<std::vector<std::uint64_t>> at{{115, 3, 5, 8, 9, 10, 7, 8, 8},
                                                    {106, 6, 16, 11}};
   for (std::size_t g = 0; g < kLegalGofs.size(); ++g) {
     const LegalGof& gof = kLegalGofs[g];

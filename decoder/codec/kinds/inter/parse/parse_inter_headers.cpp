@@ -44,9 +44,7 @@ void parse_inter_settings(BitReader& r, const SequenceHeader& header, std::uint3
   if (r.stopped()) return;
   settings.layer_step.assign(num_layers, kMaxLayerStep);
   if (!settings.exact_flag) parse_layer_steps(r, settings.layer_step);
-  if (settings.layer_group_size.size() == 1) {
-    settings.rest = parse_rest_settings(r, settings.exact_flag);
-  }
+  settings.rest = parse_rest_settings(r, settings.exact_flag);
   settings.num_patches =
       r.ue("num_patches", {0, std::int64_t{header.level().max_clusters}}, "R-LVL-06");
   r.byte_alignment();
@@ -68,7 +66,6 @@ FrameUnitStart parse_frame_unit_header(BitReader& r, const SequenceHeader& heade
   if (start.gof_end_flag) return start;
   const std::int64_t num_groups = counts.layer_groups;
   start.layer_group_idx = r.ue("layer_group_idx", {0, num_groups - 1}, "R-FRM-02");
-  if (num_groups > 1) return start;
   const std::int64_t max_minus1 = std::int64_t{counts.frames} - 1;
   const std::uint64_t at = r.bit_pos();
   start.unit_frames_minus1 = {"unit_frames_minus1", 0, at};

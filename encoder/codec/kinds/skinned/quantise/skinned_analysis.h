@@ -39,8 +39,9 @@ struct SkinnedSettings {
   Rounding rounding = Rounding::kCheapest;
   bool draft = false;        // code tracks only as well as comparing candidates needs
   bool cobra_steps = false;  // temporal steps of Vasa and Skala 2009; else equal distortion
-  std::uint32_t component_groups = 0;  // 0: chosen by size
-  std::uint32_t layer_groups = 0;      // 0: chosen by size
+  std::uint32_t component_groups = 0;     // 0: chosen by size
+  std::uint32_t layer_groups = 0;         // 0: chosen by size
+  std::vector<std::uint32_t> layer_cuts;  // EncoderSettings::main
   std::size_t max_trajectories = 1024;
 
   // tuned: Bits of a quantised influence of a bone. Finer weights cost bits at every vertex;

@@ -59,7 +59,7 @@ SliceCuts choose_slice_cuts(const SkinnedSettings& settings, double bits, std::s
 
 void cut_slices(const OrderedMesh& mesh, const SkinnedSettings& settings, const SliceCuts& cuts,
                 std::span<const std::int32_t> residual, SharedRig& rig) {
-  rig.layer_group_size = layer_group_sizes(mesh, cuts.num_layer_groups, settings.layer_groups);
+  rig.layer_group_size = layer_group_sizes(mesh, cuts.num_layer_groups, settings.layer_cuts);
   cut_components(mesh.num_vertices(), cuts.group_end, residual, rig);
   rig.slice_layers.assign(rig.group_end.size(),
                           static_cast<std::uint32_t>(rig.layer_group_size.size()));

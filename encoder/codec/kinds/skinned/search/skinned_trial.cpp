@@ -41,6 +41,7 @@ SkinnedSettings usual_settings(const EncoderSettings& settings) {
   usual.cobra_steps = tools.cobra_steps;
   usual.component_groups = tools.component_groups;
   usual.layer_groups = tools.layer_groups;
+  usual.layer_cuts = tools.layer_cuts;
   usual.max_trajectories = kLevels.back().max_components;
   if (settings.components > 0) usual.max_trajectories = settings.components;
   return usual;
