@@ -74,6 +74,8 @@ struct InterGofRecipe {
   std::uint32_t rest_ring_weight = 0;
   bool rest_axes_flag = false;
   bool rest_counterparts_flag = false;
+  std::uint32_t rest_step_minus1 = 15;
+  bool frame_step_delta_flag = false;
   std::uint32_t num_patches = 0;
   std::vector<std::uint8_t> patch_map;  // the section
 
@@ -106,6 +108,10 @@ struct InterGofRecipe {
       w.flag(rest_axes_flag);
       w.flag(rest_counterparts_flag);
     }
+    if (!exact_flag) {
+      w.ue(rest_step_minus1);
+      w.flag(frame_step_delta_flag);
+    }
     w.ue(num_patches);
     w.byte_alignment();
     w.append(patch_map);
@@ -129,7 +135,8 @@ class FrameRecipe : public SectionRecipe {
   std::optional<bool> gof_end_flag;  // of open-ended streams
   std::uint32_t layer_group_idx;
   std::uint32_t unit_frames_minus1 = 0;
-  std::vector<EarlierRecipe> earlier;  // of each frame, where earlier_flag is coded
+  std::vector<EarlierRecipe> earlier;          // of each frame, where earlier_flag is coded
+  std::vector<std::int32_t> frame_step_delta;  // of each frame, in units without earlier flags
   std::vector<std::uint32_t> frame_crc;
   bool has_section = true;
 
@@ -157,6 +164,7 @@ class FrameRecipe : public SectionRecipe {
         w.ue(*frame.earlier_distance_minus1);
         w.flag(frame.repeat_flag);
       }
+      for (const std::int32_t delta : frame_step_delta) w.se(delta);
     }
     w.byte_alignment();
     for (const std::uint32_t crc : frame_crc) w.u(32, crc);

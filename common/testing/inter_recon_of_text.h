@@ -49,8 +49,7 @@ class InterReconOfText {
     reference.assign(size(), 0);
     if (f_ > 0) make_reference(frame);
     if (f_ > 0 && gof_.num_patches > 0) {
-      patches_.move(reference, order_[place_].depth, gof_.step[order_[place_].depth],
-                    frame.patches);
+      patches_.move(reference, order_[place_].depth, step_of_frame(), frame.patches);
     }
     values_.assign(size(), 0);
     std::uint32_t present = 0;
@@ -112,7 +111,7 @@ class InterReconOfText {
   void decode_positions_in_order(const InterFrame& frame) {
     std::vector<std::int32_t> residuals(size(), 0);
     for (std::size_t i = 0; i < frame.residual.size(); ++i) residuals[i] = frame.residual[i];
-    const RestRecon recon(mesh_.rest_order(), gof_.rest, gof_.step[0], position_bits_);
+    const RestRecon recon(mesh_.rest_order(), gof_.rest, gof_.first_step, position_bits_);
     const auto rest = recon_rest(recon, mesh_.rest_order(), residuals, frame.counterparts);
     values_.assign(rest.begin(), rest.end());
   }
@@ -302,8 +301,14 @@ class InterReconOfText {
       if (frame.repeated) values_[at(v, c)] = decoded[*frame.repeated][at(v, c)];
     }
   }
+  std::uint32_t step_of_frame() const {
+    if (f_ == 0) return gof_.first_step;
+    const std::int64_t step = gof_.step[order_[place_].depth];
+    const std::int64_t changed = (step * (16 + (*gof_.frames)[f_].step_delta)) >> 4;
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(changed, 1, 65536));
+  }
   std::int64_t frame_step(std::uint32_t v) const {
-    return std::int64_t{gof_.step[order_[place_].depth]} * gof_.layer_step[mesh_.layer_of(v)];
+    return std::int64_t{step_of_frame()} * gof_.layer_step[mesh_.layer_of(v)];
   }
 
   void learn(const InterFrame& frame, std::uint32_t v) {

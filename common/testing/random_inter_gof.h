@@ -90,6 +90,8 @@ InterGof random_frame_settings(const OrderedMesh& mesh, std::uint32_t num_frames
     gof.rest = {gof.exact_flag, true, static_cast<int>(below(64)), static_cast<int>(below(64)),
                 below(2) == 0,  false};
   }
+  if (!gof.exact_flag) gof.first_step = 1 + below(200);
+  gof.step_delta_flag = !gof.exact_flag && below(2) == 0;
   if (below(2) == 0) {
     gof.num_patches = 1 + below(6);
     for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
@@ -137,6 +139,10 @@ inline InterGof random_inter_gof(std::uint64_t seed, const OrderedMesh& mesh,
         }
         frame.reference = before.frame;
       }
+    }
+    if (gof.step_delta_flag && place > 0 && below(2) == 0) {
+      frame.step_delta = kMinStepDelta + static_cast<std::int32_t>(
+                                             below(below(2) == 0 ? 30 : kMaxStepDelta + 16));
     }
     for (std::uint32_t p = 0; place > 0 && p < gof.num_patches; ++p) {
       PatchMotion& patch = frame.patches.emplace_back();

@@ -165,6 +165,12 @@ class HighSource(random_attributes.AttributeSource, random_main.MainSource):
     def _frame_step_minus1(self, ns, indices, arguments):
         return self.near(0, 65535)
 
+    def _frame_step_delta_flag(self, ns, indices, arguments):
+        return int(self.numbers.chance(40))
+
+    def _frame_step_delta(self, ns, indices, arguments):
+        return self.numbers.pick([0, self.numbers.between(-8, 8), self.near(-15, 240)])
+
     def _learning_flag(self, ns, indices, arguments):
         return int(self.numbers.chance(70))
 

@@ -219,6 +219,8 @@ def inferred(writer, name, indices):
         return None  # known once the frame, or the whole stream, has been written
     if name == "layer_group_idx" and writer.source.unit_code == ns["FRAME"]:
         return ns["FrameGroups"][ns["frame_idx"]]
+    if name == "rest_step_minus1" and ns["UnitCode"] == ns["GOF"] and ns["gof_kind"] == 3:
+        return ns["frame_step_minus1"][0]
     if name == "unit_frames_minus1" and ns["layer_group_idx"] > 0:
         return max(0, len(ns["FramesToCome"]) - 1)
     if name in _SLICES:

@@ -189,6 +189,9 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "where the temporal layer changes.",
      "Count the frames of one temporal layer, up to the last of the GOF; in an open-ended "
      "stream, begin a new unit where the temporal layer changes."},
+    {"R-FRM-10", "7.14.2", "frame_step_delta is out of range.",
+     "The step of a frame is not from a sixteenth to 16 times that of its depth.",
+     "Keep frame_step_delta between -15 and 240; begin a GOF with other steps for more."},
     {"R-GOF-01", "7.5", "A GOF does not begin with the frame after the GOF before.",
      "A GOF was left out, repeated or reordered; or first_frame is not counted from the "
      "start of the sequence.",

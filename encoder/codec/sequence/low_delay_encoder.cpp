@@ -23,9 +23,9 @@ namespace rlpc {
 namespace {
 
 // RMS error of a coordinate over the quantiser step: 0.29 where residuals are rounded to
-// nearest, more where many fall into the dead zone. Later GOFs use the ratio of earlier ones.
-constexpr double kFirstErrorRatio = 0.36;  // fixed: measured, 0.33 to 0.37 on nine animations
-constexpr double kAim = 0.985;             // fixed: a margin below the KG error
+// nearest, more where many fall into the dead zone. Later steps follow the error (StepControl).
+constexpr double kFirstErrorRatio = 0.6;  // fixed: most animations stay below, 0.5 to 0.6
+constexpr double kAim = 0.985;            // fixed: a margin below the KG error
 
 }  // namespace
 
@@ -94,7 +94,7 @@ Target LowDelayEncoder::target_for_floats() const {
 }
 
 // Returns the step, in grid steps. rms_spread: RMS of the coordinates about the mean of their
-// frame, units.
+// frame, units; used for the first GOF.
 double LowDelayEncoder::step_for(double rms_spread) const {
   const double per_unit = exact_exp2(-coding_->header().grid.log2_step);
   const Target target = target_for_floats();
@@ -103,8 +103,8 @@ double LowDelayEncoder::step_for(double rms_spread) const {
     const double coordinate_error = target.value * per_unit / std::sqrt(3.0);
     return 2.0 * (coordinate_error - 0.5) - 1.0 / kExactInterStep;
   }
-  const double ratio = error_ratio_ > 0.0 ? error_ratio_ : kFirstErrorRatio;
-  return kAim * target.value / 100.0 * rms_spread * per_unit / ratio;
+  if (step_ > 0.0) return step_ * control_.factor();
+  return kAim * target.value / 100.0 * rms_spread * per_unit / kFirstErrorRatio;
 }
 
 std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz) {
@@ -113,26 +113,19 @@ std::optional<InputError> LowDelayEncoder::begin_gof(std::span<const float> xyz)
   const auto extent = measure_extent(frame);
   if (!extent) return extent.error();
   const OrderedMesh& layers = (*meshes_)[Prediction::kLayers];
-  // Use the spread of all frames so far, which the KG error is relative to; at first, that of
-  // this frame.
-  double spread = extent->rms_spread;
-  if (num_added_ > 0) {
-    const Metrics so_far = metrics_.result();
-    if (so_far.kg_error_percent > 0.0 && std::isfinite(so_far.kg_error_percent)) {
-      spread = 100.0 * so_far.rms_error / (std::sqrt(3.0) * so_far.kg_error_percent);
-    }
-  }
-  step_ = std::max(step_for(spread), 1.0 / kExactInterStep);
+  step_ = std::max(step_for(extent->rms_spread), 1.0 / kExactInterStep);
   gof_ = std::make_unique<Gof>();
   gof_->settings =
       choose_frame_settings(coding_->header(), settings_, layers,
                             settings_.inter.pattern.value_or(FramePattern{}), step_);
+  control_.start_again();
+  gof_->settings.step_delta_flag = settings_.target.kind == Target::kKg;
   gof_->settings.max_earlier_distance = 1;
   if (auto error = divide(xyz)) return error;
   if (auto error = code_first(xyz, layers)) return error;
   gof_->announced = frames_in_gof();
   gof_->coding.emplace(layers, gof_->settings, coding_->header(), gof_->announced, UnitLimits{},
-                       settings_.target.kind == Target::kMaxError);
+                       residual_rule(settings_, gof_->settings.pattern));
   const GofHeader header{GofKind::kInter, num_added_, gof_->announced};
   const Bytes unit = write_unit(
       UnitType::kGof, write_inter_gof_unit(header, gof_->settings, layers.topology()));
@@ -199,10 +192,19 @@ std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz
   if (auto error = verifier.expect(positions, original)) return error;
   ++num_added_;
   ++gof_->coded;
-  const double rms = metrics_.result().rms_error / std::sqrt(3.0);
-  const double per_unit = exact_exp2(-coding_->header().grid.log2_step);
-  if (settings_.target.kind == Target::kKg) error_ratio_ = rms * per_unit / step_;
+  if (settings_.target.kind == Target::kKg) follow_error();
   return std::nullopt;
+}
+
+void LowDelayEncoder::follow_error() {
+  const Metrics so_far = metrics_.result();
+  const double sum = so_far.rms_error * so_far.rms_error * num_added_;
+  const double last = sum - std::exchange(squared_error_, sum);
+  const double kg = so_far.kg_error_percent;
+  if (!(kg > 0.0) || !std::isfinite(kg)) return;
+  const double aim = kAim * settings_.target.value / kg * so_far.rms_error;
+  control_.add(last / (aim * aim), num_added_ - sum / (aim * aim));
+  gof_->coding->set_step_delta(control_.delta());
 }
 
 void LowDelayEncoder::end_gof() {

@@ -15,6 +15,7 @@
 #include "encoder/codec/sequence/attribute_stage.h"
 #include "encoder/codec/sequence/frame_backend.h"
 #include "encoder/codec/sequence/sequence_coding.h"
+#include "encoder/codec/sequence/step_control.h"
 #include "encoder/codec/sequence/stream_assembly.h"
 #include "encoder/codec/sequence/verified_output.h"
 
@@ -53,6 +54,7 @@ class LowDelayEncoder final : public FrameBackend {
   void end_gof();
   std::optional<InputError> verify();
   Target target_for_floats() const;
+  void follow_error();
   double step_for(double rms_spread) const;
   std::uint32_t frames_in_gof() const;
   InputError fail(InputError error) {
@@ -72,8 +74,9 @@ class LowDelayEncoder final : public FrameBackend {
   std::optional<AttributeStage> attributes_;
   std::unique_ptr<Gof> gof_;
   std::uint32_t num_added_ = 0;
-  double step_ = 0.0;         // step of the last GOF, grid steps
-  double error_ratio_ = 0.0;  // RMS error of a coordinate over the step; 0: not known
+  double step_ = 0.0;           // step of the last GOF, grid steps
+  StepControl control_;         // of a KG error
+  double squared_error_ = 0.0;  // sum over the frames so far, of means of squared coordinates
   MetricsAccumulator metrics_;
   std::optional<InputError> failure_;
 };

@@ -55,6 +55,10 @@ std::vector<std::uint8_t> write_inter_gof_unit(const GofHeader& gof,
   write_layer_groups(w, settings.layer_group_size);
   if (!settings.exact_flag) write_layer_steps(w, settings.layer_step);
   write_rest_settings(w, settings.rest);
+  if (!settings.exact_flag) {
+    w.ue(settings.first_step - 1);
+    w.flag(settings.step_delta_flag);
+  }
   w.ue(settings.num_patches);
   w.byte_alignment();
   std::vector<std::uint8_t> payload = w.take();
@@ -67,9 +71,11 @@ std::vector<std::uint8_t> write_inter_gof_unit(const GofHeader& gof,
   return payload;
 }
 
-void FrameUnitWriter::start_frame(std::uint32_t place, const FramePlace& frame) {
+void FrameUnitWriter::start_frame(std::uint32_t place, const FramePlace& frame,
+                                  std::int32_t step_delta) {
   place_ = place;
   frame_ = frame;
+  step_delta_ = step_delta;
   unit_ = &unit_of(frame, 0);
   if (place > 0) patch_contexts_.start_frame(frame.depth);
   patches_.clear();
@@ -101,7 +107,8 @@ void FrameUnitWriter::repeat(const FramePlace& frame, std::uint32_t distance) {
 void FrameUnitWriter::start_group(std::uint32_t layer_group) {
   unit_ = &unit_of(frame_, layer_group);
   contexts_.start_group(place_, frame_.depth, layer_group);
-  unit_->frames.push_back({.frame = frame_.frame, .distance = reference_distance_});
+  unit_->frames.push_back(
+      {.frame = frame_.frame, .distance = reference_distance_, .step_delta = step_delta_});
   if (!unit_->section) unit_->section.emplace();
   if (layer_group == 0) write_patches();
 }
@@ -161,13 +168,13 @@ std::vector<std::uint8_t> FrameUnitWriter::payload_of(std::uint32_t layer_group,
   w.ue(layer_group);
   w.ue(static_cast<std::uint32_t>(unit.frames.size() - 1));
   for (const UnitFrame& frame : unit.frames) {
-    if (settings_.max_earlier_distance == 0 || layer_group > 0 || frame.frame == 0) {
-      continue;
+    if (layer_group > 0 || frame.frame == 0) continue;
+    if (settings_.max_earlier_distance > 0) {
+      w.flag(frame.distance > 0);  // earlier_flag
+      if (frame.distance > 0) w.ue(frame.distance - 1);
+      if (frame.distance > 0) w.flag(frame.is_repeated);
     }
-    w.flag(frame.distance > 0);  // earlier_flag
-    if (frame.distance == 0) continue;
-    w.ue(frame.distance - 1);
-    w.flag(frame.is_repeated);
+    if (settings_.step_delta_flag && !frame.is_repeated) w.se(frame.step_delta);
   }
   w.byte_alignment();
   for (const UnitFrame& frame : unit.frames) {
@@ -230,7 +237,7 @@ InterGofPayloads write_inter_gof(const InterGof& gof, const OrderedMesh& mesh,
     if (std::exchange(groups_of_layer[layer], frame.layer_groups) > frame.layer_groups) {
       finish_units(layer);
     }
-    writer.start_frame(place, order[place]);
+    writer.start_frame(place, order[place], frame.step_delta);
     if (frame.reference) writer.set_reference(place - order.place_of(*frame.reference));
     writer.set_patches(frame.patches);
     std::uint32_t first = 0;  // first layer of the group

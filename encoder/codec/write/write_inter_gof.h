@@ -40,7 +40,8 @@ class FrameUnitWriter {
   // that patches move alone, and end_group(). If the GOF has patches, set_patches() comes
   // second in each frame but the first. finish_units() comes after one or more frames of a
   // temporal layer; in an open-ended stream, before a frame of another temporal layer.
-  void start_frame(std::uint32_t place, const FramePlace& frame);
+  // step_delta: used if the GOF has step_delta_flag, and the frame is not the first.
+  void start_frame(std::uint32_t place, const FramePlace& frame, std::int32_t step_delta = 0);
   // Sets the distance, in places, of the earlier frame that predicts this one instead of its
   // references.
   void set_reference(std::uint32_t distance) { reference_distance_ = distance; }
@@ -74,6 +75,7 @@ class FrameUnitWriter {
     std::uint32_t frame = 0;
     std::uint32_t distance = 0;  // places to its repeated or reference frame; 0: neither
     bool is_repeated = false;
+    std::int32_t step_delta = 0;
     std::uint32_t crc = 0;
   };
 
@@ -95,6 +97,7 @@ class FrameUnitWriter {
       0;  // places; 0: the frame has the references of its pattern
   std::uint32_t place_ = 0;
   FramePlace frame_;
+  std::int32_t step_delta_ = 0;
   std::vector<std::vector<Unit>> units_;  // [temporal layer][layer group]
   Unit* unit_ = nullptr;                  // unit of the frame and layer group
 };

@@ -1,6 +1,7 @@
 // 6.14: an inter GOF, whose frames are predicted from decoded frames.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -20,6 +21,16 @@ inline constexpr std::uint32_t kMaxInterStep = 1U << 16;  // 1/16 grid units
 inline constexpr std::uint32_t kExactInterStep = 16;      // one grid unit
 inline constexpr std::uint32_t kMaxInterExpected = 1023;  // 9.8.6, 1/16
 
+// frame_step_delta, 1/16 of the step of the depth
+inline constexpr std::int32_t kMinStepDelta = -15;
+inline constexpr std::int32_t kMaxStepDelta = 240;
+
+// 8.19.3 StepOfFrame( f ): step_of_depth is 1 to kMaxInterStep.
+inline std::uint32_t changed_step(std::uint32_t step_of_depth, std::int32_t delta) {
+  const std::int64_t step = std::int64_t{step_of_depth} * (16 + delta) >> 4;
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(step, 1, kMaxInterStep));
+}
+
 // 6.14.2 frame_unit( ): the residuals of a frame.
 struct InterFrame {
   std::uint32_t layer_groups = 0;  // number in the stream; residuals of others are zero
@@ -27,6 +38,7 @@ struct InterFrame {
   std::optional<std::uint32_t> repeated;
   // Frame that replaces the references of the pattern.
   std::optional<std::uint32_t> reference;
+  std::int32_t step_delta = 0;
   std::optional<FrameCrc> frame_crc;
   FramePatches patches;
   CompactResiduals residual;       // [num_vertices][3]; empty: all are zero
@@ -40,7 +52,8 @@ struct InterFrame {
 struct InterSettings {
   FramePattern pattern;
   bool exact_flag = false;                      // positions are sums of whole grid units
-  Vector<std::uint32_t> step{kExactInterStep};  // [num_depths]
+  std::uint32_t first_step = kExactInterStep;   // of the first frame
+  Vector<std::uint32_t> step{kExactInterStep};  // [num_depths], of other frames
   bool learning_flag = false;
   WeightSettings weights;  // without adaptive factors
   int prime_log2 = 0;
@@ -49,6 +62,7 @@ struct InterSettings {
   Vector<std::uint32_t> layer_group_size{1};  // [num_layer_groups] layers
   Vector<std::uint8_t> layer_step;            // [num_layers], 1 to kMaxLayerStep
   RestSettings rest;                          // settings of the first frame
+  bool step_delta_flag = false;
   std::uint32_t num_patches = 0;
   PatchOfVertex patch_of_vertex;  // [num_vertices]; empty without patches
 

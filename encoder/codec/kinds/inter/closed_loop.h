@@ -25,21 +25,30 @@ struct UnitLimits {
   std::size_t bytes = 0;
 };
 
+// How the residual of a coordinate is chosen.
+enum class ResidualRule : std::uint8_t {
+  kNearest,     // rounded to nearest
+  kCheapest,    // by rate and distortion
+  kFollowRing,  // by rate and distortion, following the errors of the ring
+};
+
 // Codes one frame after the other. Needs the memory of a decoder, and of the predictions of two
 // layers. Vertices of a layer are predicted, and adapt, on several threads.
 class ClosedLoop {
  public:
   // The mesh must have layers; mesh and settings must outlive it. num_frames: length of the
-  // GOF. to_nearest: residuals are rounded to nearest, not chosen by rate and distortion.
+  // GOF. rule: not used if positions are exact.
   ClosedLoop(const OrderedMesh& mesh, const InterSettings& settings,
              const SequenceHeader& header, std::uint32_t num_frames,
-             const UnitLimits& limits = {}, bool to_nearest = false);
+             const UnitLimits& limits = {}, ResidualRule rule = ResidualRule::kCheapest);
 
   // Return the frame that comes next in coding order, and the one so many places before it.
   const FramePlace& next_place() const { return order_[recon_.place()]; }
   std::uint32_t frame_before(std::uint32_t distance) const {
     return order_[recon_.place() - distance].frame;
   }
+  // Sets frame_step_delta of the next frames but the first, if the settings have it.
+  void set_step_delta(std::int32_t delta) { step_delta_ = delta; }
   // Codes the next frame; xyz [num_vertices][3], in grid units, unrounded. Returns the frame
   // units that end with it, and writes its positions as a decoder outputs them. coded: unless
   // null, set to the frame as a parser would return it. distance: unless 0, the frame is
@@ -68,6 +77,11 @@ class ClosedLoop {
   };
 
   void predict(Layer& layer, std::uint32_t index);
+  // Sets the position of a vertex. original: its three coordinates, grid units.
+  void set(std::uint32_t v, VertexMotion& motion, const Vec3i& position,
+           const double* original);
+  // Returns what is added to a coordinate before its residual is chosen (kRingError).
+  double feedback(std::uint32_t v, std::size_t coordinate, std::uint32_t expected) const;
   void choose(Layer& layer, std::span<const double> xyz, InterFrame* coded);
   void adapt(Layer& layer, std::size_t first, std::size_t end);
   // Ends the unit if necessary; called after a frame, or after each of several layer groups.
@@ -77,13 +91,15 @@ class ClosedLoop {
   const InterSettings& settings_;
   UnitLimits limits_;
   bool is_open_ended_;
-  bool to_nearest_;
+  ResidualRule rule_;
+  std::int32_t step_delta_ = 0;
   FrameOrder order_;
   InterRecon recon_;
   FrameUnitWriter writer_;
   std::optional<PatchSearch> patch_search_;  // none without patches
   FramePatches patches_;                     // patches of the frame
-  Layer layers_[2];  // one adapts while residuals of the other are chosen
+  std::vector<double> errors_;  // [vertex][3] in this frame, grid units; empty: no feedback
+  Layer layers_[2];             // one adapts while residuals of the other are chosen
 };
 
 }  // namespace rlpc

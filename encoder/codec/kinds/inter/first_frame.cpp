@@ -37,7 +37,7 @@ double cost_of(std::span<const double> xyz, std::span<const std::int32_t> positi
     const double d = positions[i] - xyz[i];
     square += d * d;
   }
-  return square + lambda(settings.step[0] / kPointUnits) * bits;
+  return square + lambda(settings.first_step / kPointUnits) * bits;
 }
 
 double cost_in_layers(const OrderedMesh& mesh, const InterSettings& settings,
@@ -65,8 +65,8 @@ std::shared_ptr<const RestEncoding> code_first_frame(const OrderedMesh& mesh,
                             .counterparts = tools == RestTools::kCounterparts,
                             .exact = exact};
   RestEncoding coded =
-      code_rest_in_order(mesh, points(xyz, header.position_bits, exact), frame_settings.step[0],
-                         header.position_bits, choices);
+      code_rest_in_order(mesh, points(xyz, header.position_bits, exact),
+                         frame_settings.first_step, header.position_bits, choices);
   std::vector<std::int32_t> positions(coded.values.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     positions[i] =

@@ -23,7 +23,7 @@ class InterSpanCoder : public SpanCoder {
       : mesh_(mesh),
         settings_(settings),
         frames_(frames),
-        maker_(mesh, layers, settings, frames) {}
+        maker_(mesh, layers, settings, frames, frames.num_frames) {}
 
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return true; }
   void release_analysis() override {}

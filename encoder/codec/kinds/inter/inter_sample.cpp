@@ -55,7 +55,7 @@ InterSample::InterSample(const SequenceMesh& mesh, const EncoderSettings& settin
       topology_(make_topology(frames_.num_vertices, sample_.triangles)),
       meshes_(topology_, sample_.triangles, true),
       mesh_{mesh.header, topology_, sample_.triangles},
-      maker_(mesh_, meshes_[Prediction::kLayers], settings_, frames_) {}
+      maker_(mesh_, meshes_[Prediction::kLayers], settings_, frames_, num_frames_) {}
 
 bool InterSample::saves_time(std::uint32_t num_vertices) {
   return num_vertices > 2 * kSmallestSample;

@@ -26,6 +26,15 @@ constexpr int kPrime = 6;
 // frames are no references, so that their errors stay with them.
 constexpr double kStepOfDepth = 1.2;
 
+// tuned (off: 1): The step of the first frame, in steps of depth 0. All others inherit its
+// errors.
+constexpr double kStepOfFirst = 0.5;
+// tuned (off: 1): The step of a layer, in steps of the next finer one, which inherits its
+// errors.
+constexpr double kStepOfLayer = 0.97;
+// fixed: a guard; no layer has a smaller step than this, relative to the finest.
+constexpr double kMinLayerStep = 0.5;
+
 // Returns the root mean square of the steps of a period, in steps of depth 0.
 double mean_step(const FramePattern& pattern) {
   const FrameOrder order(pattern, pattern.period() + 1);
@@ -38,7 +47,22 @@ double mean_step(const FramePattern& pattern) {
   return std::sqrt(sum / pattern.period());
 }
 
+void set_layer_steps(Vector<std::uint8_t>& steps) {
+  double step = 1.0;
+  for (std::size_t l = steps.size(); l-- > 0; step *= kStepOfLayer) {
+    steps[l] = static_cast<std::uint8_t>(kMaxLayerStep * std::max(step, kMinLayerStep) + 0.5);
+  }
+}
+
 }  // namespace
+
+ResidualRule residual_rule(const EncoderSettings& settings, const FramePattern& pattern) {
+  const Target::Kind target = settings.target.kind;
+  if (target == Target::kMaxError && settings.low_delay) return ResidualRule::kNearest;
+  const bool may_follow = target != Target::kMaxError && target != Target::kLossless;
+  return may_follow && pattern.num_depths() == 1 ? ResidualRule::kFollowRing
+                                                 : ResidualRule::kCheapest;
+}
 
 InterSettings choose_frame_settings(const SequenceHeader& header,
                                     const EncoderSettings& settings, const OrderedMesh& layers,
@@ -47,12 +71,17 @@ InterSettings choose_frame_settings(const SequenceHeader& header,
   s.pattern = pattern;
   s.pattern.temporal_layers = settings.inter.temporal_layers;
   step /= mean_step(s.pattern);
+  const auto units = [](double wanted) {
+    return static_cast<std::uint32_t>(
+        std::clamp(std::floor(wanted * kExactInterStep + 0.5), 1.0, double{kMaxInterStep}));
+  };
   s.exact_flag = settings.target.kind == Target::kLossless;
   s.step.assign(s.pattern.num_depths(), kExactInterStep);
+  const bool is_bound = settings.target.kind == Target::kMaxError;
+  if (!s.exact_flag) s.first_step = units(is_bound ? step : kStepOfFirst * step);
   for (std::uint32_t& depth_step : s.step) {
     if (s.exact_flag) break;
-    depth_step = static_cast<std::uint32_t>(
-        std::clamp(std::floor(step * kExactInterStep + 0.5), 1.0, double{kMaxInterStep}));
+    depth_step = units(step);
     step *= kStepOfDepth;
   }
   const InterWeights weights = settings.inter.weights;
@@ -67,6 +96,7 @@ InterSettings choose_frame_settings(const SequenceHeader& header,
   s.layer_group_size =
       layer_group_sizes(layers, settings.inter.layer_groups, settings.inter.layer_cuts);
   s.layer_step.assign(layers.num_layers(), kMaxLayerStep);
+  if (!s.exact_flag && !is_bound) set_layer_steps(s.layer_step);
   return s;
 }
 

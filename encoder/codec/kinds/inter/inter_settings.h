@@ -8,10 +8,15 @@
 #include "common/codec/mesh/mesh.h"
 #include "common/codec/mesh/ordered_mesh.h"
 #include "common/codec/syntax/sequence_header.h"
+#include "encoder/codec/kinds/inter/closed_loop.h"
 #include "encoder/codec/settings.h"
 #include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
+
+// Returns how residuals are chosen: live, bounds of errors need the nearest. Where a pattern
+// has several depths, following the ring gains nothing.
+ResidualRule residual_rule(const EncoderSettings& settings, const FramePattern& pattern);
 
 // step: quantiser step, in grid steps; not used if the target is lossless. For a pattern with
 // several depths, it is the root mean square of their steps, so that error and worth of a bit

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "common/codec/mesh/ordered_meshes.h"
@@ -50,6 +51,32 @@ TEST(InterSettings, StepsOfDepthsHaveTheMeanSquareOfTheStep) {
     return step * step;
   };
   EXPECT_NEAR((square(0) + square(1) + 2.0 * square(2)) / 4.0, 64.0 * 64.0, 40.0);
+}
+
+// All frames inherit the errors of the first, and fine layers those of coarse ones.
+TEST(InterSettings, WhatOthersInheritHasSmallSteps) {
+  const InterSettings s = settings_with(InterWeights::kLearned);
+  EXPECT_LT(s.first_step, s.step[0]);
+  ASSERT_GT(s.layer_step.size(), 2U);
+  EXPECT_EQ(s.layer_step.back(), kMaxLayerStep);
+  EXPECT_LT(s.layer_step.front(), kMaxLayerStep);
+  EXPECT_TRUE(std::is_sorted(s.layer_step.begin(), s.layer_step.end()));
+}
+
+TEST(InterSettings, ResidualsFollowTheRingUnlessErrorsAreBound) {
+  EncoderSettings settings;
+  const FramePattern previous;
+  const FramePattern dyadic{FramePattern::kDyadic, 2, {}, 1};
+  settings.target = {Target::kKg, 0.1};
+  EXPECT_EQ(residual_rule(settings, previous), ResidualRule::kFollowRing);
+  EXPECT_EQ(residual_rule(settings, dyadic), ResidualRule::kCheapest);
+  for (const Target::Kind kind : {Target::kMaxError, Target::kLossless}) {
+    settings.target = {kind, 0.1};
+    EXPECT_EQ(residual_rule(settings, previous), ResidualRule::kCheapest);
+  }
+  settings.target = {Target::kMaxError, 0.1};
+  settings.low_delay = true;
+  EXPECT_EQ(residual_rule(settings, previous), ResidualRule::kNearest);
 }
 
 }  // namespace

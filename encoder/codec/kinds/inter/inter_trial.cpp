@@ -1,6 +1,7 @@
 #include "encoder/codec/kinds/inter/inter_trial.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <utility>
@@ -65,8 +66,8 @@ DecodeFrame DecodedSpan::decoder() const {
 
 InterTrial::InterTrial(const OrderedMesh& mesh, const SequenceHeader& header,
                        const SpanFrames& frames, const InterSettings& settings,
-                       const UnitLimits& limits, const InterChoice& choice,
-                       std::shared_ptr<const RestEncoding> first)
+                       const UnitLimits& limits, const InterChoice& choice, ResidualRule rule,
+                       std::uint32_t num_frames, std::shared_ptr<const RestEncoding> first)
     : mesh_(mesh),
       header_(header),
       frames_(frames),
@@ -74,8 +75,9 @@ InterTrial::InterTrial(const OrderedMesh& mesh, const SequenceHeader& header,
       earlier_(earlier_of(header, frames, settings.pattern)),
       first_(std::move(first)),
       settings_(with_first(with_distance(settings, earlier_), first_.get())),
-      coding_(mesh, settings_, header, frames.num_frames, limits),
+      coding_(mesh, settings_, header, frames.num_frames, limits, rule),
       decoded_(frames.num_vertices, frames.num_frames),
+      num_frames_(num_frames),
       bits_of_pattern_(settings.pattern.num_depths(), 0.0) {
   const GofHeader gof{GofKind::kInter, frames.first_frame, frames.num_frames};
   add({{UnitType::kGof, write_inter_gof_unit(gof, settings_, mesh.topology())}});
@@ -107,6 +109,7 @@ void InterTrial::code_to(std::uint32_t count) {
       if (distance == 0) bits_of_pattern_[place.depth] = bits() - before;
     }
     if (num_coded_ == 0) bits_of_start_ = bits();
+    bits_after_.push_back(bits());
     for (std::size_t i = 0; i < values; ++i) {
       const double d = positions[i] - xyz[i];
       squared_error_ += d * d;
@@ -130,15 +133,28 @@ std::uint32_t InterTrial::reference_distance(const FramePlace& place) const {
   return from_earlier < bits_from(mesh_, xyz, reference, step) ? distance : 0;
 }
 
+// Returns the bits of a frame other than the first, expected in a GOF of so many frames.
+double InterTrial::bits_of_later(std::uint32_t num_frames) const {
+  const std::uint32_t half = (num_coded_ - 1) / 2;
+  if (half == 0) return bits() - bits_of_start_;
+  const double mean = (bits() - bits_of_start_) / (num_coded_ - 1.0);
+  if (settings_.pattern.kind != FramePattern::kFirst) return mean;
+  // Frames move away from the first, as a random walk does: with the root of their distance.
+  const double early = (bits_after_[half] - bits_after_[0]) / half;
+  const double late = (bits_after_.back() - bits_after_[num_coded_ - 1 - half]) / half;
+  const double near = std::sqrt(0.5 * half);
+  const double grown =
+      (std::sqrt(0.5 * num_frames) - near) / (std::sqrt(half + 0.5 * half) - near);
+  return std::max(mean, early + grown * (late - early));
+}
+
 SpanCost InterTrial::expected(std::uint32_t num_frames) const {
-  const double coded = num_coded_ - 1.0;
-  const double share = coded > 0.0 ? (num_frames - 1.0) / coded : 1.0;
-  return {bits_of_start_ + share * (bits() - bits_of_start_),
+  return {bits_of_start_ + (num_frames - 1.0) * bits_of_later(num_frames),
           squared_error_ * num_frames / num_coded_};
 }
 
 double InterTrial::cost() const {
-  const double bits = expected(frames_.num_frames).bits;
+  const double bits = expected(num_frames_).bits;
   return settings_.exact_flag ? bits : bits_at_equal_error(bits, squared_error_);
 }
 

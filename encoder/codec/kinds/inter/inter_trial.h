@@ -36,10 +36,12 @@ class InterTrial {
  public:
   // The mesh must have layers. Keeps references to mesh, header and frames. Frames that equal
   // earlier ones on the grid are not coded again; frames that nearly equal one are predicted
-  // from it if that is cheaper. choice: the choice that the settings were made for. first:
-  // unless null, the first frame in an order of its own.
+  // from it if that is cheaper. choice: the choice that the settings were made for. rule: as in
+  // ClosedLoop. num_frames: of the GOF that the frames are a sample of. first: unless null, the
+  // first frame in an order of its own.
   InterTrial(const OrderedMesh& mesh, const SequenceHeader& header, const SpanFrames& frames,
              const InterSettings& settings, const UnitLimits& limits, const InterChoice& choice,
+             ResidualRule rule, std::uint32_t num_frames,
              std::shared_ptr<const RestEncoding> first = nullptr);
   InterTrial(const InterTrial&) = delete;
   InterTrial& operator=(const InterTrial&) = delete;
@@ -59,6 +61,7 @@ class InterTrial {
 
  private:
   void add(std::vector<EncodedSpan::Unit> units);
+  double bits_of_later(std::uint32_t num_frames) const;
   double bits() const {
     return bits_of_units_ + 8.0 * static_cast<double>(coding_.unit_bytes());
   }
@@ -79,9 +82,11 @@ class InterTrial {
   DecodedSpan decoded_;
   EncodedSpan encoded_;
   std::shared_ptr<std::vector<InterFrame>> coded_;  // null: only one temporal layer
+  std::uint32_t num_frames_;
   std::uint32_t num_coded_ = 0;
   double bits_of_units_ = 0.0;
-  double bits_of_start_ = 0.0;  // bits of the GOF unit and the first frame
+  double bits_of_start_ = 0.0;      // bits of the GOF unit and the first frame
+  std::vector<double> bits_after_;  // [place]: bits up to this frame
   // [depth]: bits of the last frame that was predicted as the pattern says; 0: no such frame.
   std::vector<double> bits_of_pattern_;
   double squared_error_ = 0.0;

@@ -249,7 +249,7 @@ PatchMotion PatchSearch::fit(std::size_t patch, std::span<const double> xyz,
       }
     }
   }
-  const double step = settings_.step[depth] * kMotionStep;
+  const double step = recon.frame_step() * kMotionStep;
   PatchMotion motion;
   for (std::size_t c = 0; c < 3; ++c) {
     const double ridge = kRidge * static_cast<double>(vertices_[patch].size());
@@ -269,8 +269,7 @@ PatchMotion PatchSearch::fit(std::size_t patch, std::span<const double> xyz,
 double PatchSearch::error(std::size_t patch, std::span<const double> xyz, std::uint32_t depth,
                           const InterRecon& recon, const PatchMotion& motion,
                           std::vector<double>* left) const {
-  const auto moved =
-      recon.patches().motion(patch, depth, settings_.step[depth], motion.residual);
+  const auto moved = recon.patches().motion(patch, depth, recon.frame_step(), motion.residual);
   double sum = 0.0;
   for (const std::uint32_t v : vertices_[patch]) {
     for (std::size_t c = 0; c < 3; ++c) {

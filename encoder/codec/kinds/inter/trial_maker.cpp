@@ -24,8 +24,9 @@ std::unique_ptr<InterTrial> TrialMaker::start(const InterChoice& choice, double 
   InterSettings chosen = choose_frame_settings(mesh_.header, settings_, layers_, choice.pattern,
                                                step * choice.step_scale);
   set_patches(chosen, patches(choice.num_patches));
-  return std::make_unique<InterTrial>(layers_, mesh_.header, frames_, chosen,
-                                      unit_limits(settings_), choice, first_frame(chosen));
+  return std::make_unique<InterTrial>(
+      layers_, mesh_.header, frames_, chosen, unit_limits(settings_), choice,
+      residual_rule(settings_, choice.pattern), num_frames_, first_frame(chosen));
 }
 
 const PatchOfVertex& TrialMaker::patches(std::uint32_t count) {
@@ -37,10 +38,10 @@ const PatchOfVertex& TrialMaker::patches(std::uint32_t count) {
 }
 
 std::shared_ptr<const RestEncoding> TrialMaker::first_frame(const InterSettings& chosen) {
-  const auto found = first_frames_.find(chosen.step[0]);
+  const auto found = first_frames_.find(chosen.first_step);
   if (found != first_frames_.end()) return found->second;
   const auto xyz = std::span(frames_.xyz).first(3 * std::size_t{frames_.num_vertices});
-  return first_frames_[chosen.step[0]] =
+  return first_frames_[chosen.first_step] =
              code_first_frame(layers_, chosen, mesh_.header, settings_, xyz);
 }
 

@@ -17,10 +17,16 @@ namespace rlpc {
 
 class TrialMaker {
  public:
-  // layers: the mesh, which has layers. Keeps references to all.
+  // layers: the mesh, which has layers. num_frames: of the GOF that the frames are a sample of.
+  // Keeps references to all.
   TrialMaker(const SequenceMesh& mesh, const OrderedMesh& layers,
-             const EncoderSettings& settings, const SpanFrames& frames)
-      : mesh_(mesh), layers_(layers), settings_(settings), frames_(frames) {}
+             const EncoderSettings& settings, const SpanFrames& frames,
+             std::uint32_t num_frames)
+      : mesh_(mesh),
+        layers_(layers),
+        settings_(settings),
+        frames_(frames),
+        num_frames_(num_frames) {}
 
   // Starts an encoding at a quantiser step, in grid steps. One call at a time.
   std::unique_ptr<InterTrial> start(const InterChoice& choice, double step);
@@ -35,6 +41,7 @@ class TrialMaker {
   const OrderedMesh& layers_;
   const EncoderSettings& settings_;
   const SpanFrames& frames_;
+  std::uint32_t num_frames_;
   std::map<std::uint32_t, PatchOfVertex> patches_;  // [number of patches]
   // [step of depth 0]
   std::map<std::uint32_t, std::shared_ptr<const RestEncoding>> first_frames_;

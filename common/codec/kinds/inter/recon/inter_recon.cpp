@@ -95,7 +95,8 @@ InterRecon::InterRecon(const OrderedMesh& mesh, const InterSettings& settings,
 // 8.19.1 DecodeFrame( f )
 void InterRecon::decode(const FramePlace& place, std::uint32_t last_use,
                         const InterFrame& frame) {
-  start_frame(frame.reference ? place.from(*frame.reference) : place, last_use);
+  start_frame(frame.reference ? place.from(*frame.reference) : place, last_use,
+              frame.step_delta);
   if (now_.number == 0 && settings_.rest.order_flag) {
     decode_positions_in_order(frame);
     return end_frame();
@@ -148,7 +149,7 @@ void InterRecon::decode_positions_in_order(const InterFrame& frame) {
   Vector<std::int32_t> residuals(frame_.values.size());
   for (std::size_t i = 0; i < frame.residual.size(); ++i) residuals[i] = frame.residual[i];
   const RestOrder& order = mesh_.rest_order();
-  const RestRecon recon(order, settings_.rest, settings_.step[0], bits_.position);
+  const RestRecon recon(order, settings_.rest, settings_.first_step, bits_.position);
   set_positions(recon_rest(recon, order, residuals, frame.counterparts));
 }
 
@@ -167,17 +168,19 @@ void InterRecon::skip_to(std::uint32_t place) {
   now_.number = place;
 }
 
-void InterRecon::start_frame(const FramePlace& place, std::uint32_t last_use) {
+void InterRecon::start_frame(const FramePlace& place, std::uint32_t last_use,
+                             std::int32_t step_delta) {
   if (now_.number == 1) start_motion();
   now_.place = place;
   now_.last_use = last_use;
+  now_.step = now_.number == 0 ? settings_.first_step
+                               : changed_step(settings_.step[place.depth], step_delta);
   now_.temporal_layer = settings_.pattern.temporal_layer(place.depth);
   if (now_.number > 0) make_reference();
 }
 
 void InterRecon::move_patches(const FramePatches& patches) {
-  patches_->start_frame(frame_.reference, now_.place.depth, settings_.step[now_.place.depth],
-                        patches);
+  patches_->start_frame(frame_.reference, now_.place.depth, now_.step, patches);
 }
 
 // 8.19.3 MakeReference( f )

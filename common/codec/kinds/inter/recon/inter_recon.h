@@ -56,7 +56,8 @@ class InterRecon {
   // move_patches() if it has patches; predict() and set() for the vertices of a layer, and
   // adapt() at any time after that; and end_frame(). is_there: whether the frame has their
   // layer group; expected: FrameNoise if so.
-  void start_frame(const FramePlace& place, std::uint32_t last_use);
+  void start_frame(const FramePlace& place, std::uint32_t last_use,
+                   std::int32_t step_delta = 0);
   void move_patches(const FramePatches& patches);
   void predict(std::uint32_t v, VertexMotion& motion, bool is_there = true) const;
   // 8.19.3: returns the position for residuals in steps.
@@ -73,9 +74,10 @@ class InterRecon {
   std::int32_t start_of(std::uint32_t v, const VertexMotion& motion, std::size_t c) const;
   // Returns FrameStep of a vertex, 1/256 grid units.
   std::int64_t step(std::uint32_t v) const {
-    return std::int64_t{settings_.step[now_.place.depth]} *
-           settings_.layer_step[mesh_.layer_of(v)];
+    return std::int64_t{now_.step} * settings_.layer_step[mesh_.layer_of(v)];
   }
+  // Returns StepOfFrame of the frame in progress, 1/16 grid units.
+  std::uint32_t frame_step() const { return now_.step; }
   // Returns the place in coding order that is in progress, or comes next.
   std::uint32_t place() const { return now_.number; }
   // Returns the reference of the frame in progress, unless it is the first.
@@ -107,6 +109,7 @@ class InterRecon {
     FramePlace place;
     std::uint32_t last_use = 0;
     std::uint32_t temporal_layer = 0;
+    std::uint32_t step = 0;  // StepOfFrame, 1/16 grid units
   };
   // [num_vertices][3] of it, 1/16 grid units.
   struct Values {

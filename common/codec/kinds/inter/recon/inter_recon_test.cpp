@@ -134,7 +134,7 @@ TEST(InterRecon, TellsHowVerticesArePredicted) {
       const InterFrame& frame = (*gof.frames)[at.frame];
       text.decode_next();
       recon.start_frame(frame.reference ? at.from(*frame.reference) : at,
-                        order.last_use(at.frame));
+                        order.last_use(at.frame), frame.step_delta);
       if (place > 0 && gof.num_patches > 0) recon.move_patches(frame.patches);
       std::vector<VertexMotion> motions((*mesh).num_vertices());
       std::uint32_t present = 0;

@@ -128,6 +128,7 @@ TEST(InterReconVectors, LearnWeightsAndFollowPatches) {
   gof.pattern.kind = FramePattern::kDyadic;
   gof.pattern.period_log2 = 2;
   gof.pattern.temporal_layers = 2;
+  gof.first_step = 21;
   gof.step = {21, 32, 41};
   gof.learning_flag = true;
   gof.weights = {6, 3, 11, 0};

@@ -271,7 +271,7 @@ TEST(ParseFrameUnits, FollowEachOtherAsTheTextSays) {
 // temporal layer, cannot have the second group before frame 4.
 TEST(ParseFrameUnits, RepeatedFramesDoNotStandInForEarlierOnes) {
   InterGofUnits units(high_header(9, 9), kSquares);
-  ASSERT_TRUE(units.gof({0x89, 0xE4, 0x9C, 0x00, 0x03, 0x25, 0xFF, 0xE8}));
+  ASSERT_TRUE(units.gof({0x89, 0xE4, 0x9C, 0x00, 0x03, 0x25, 0xFF, 0xE0, 0x82}));
   const std::vector<Bytes> legal{
       {0xE0, 0xFF}, {0xA8, 0xF5}, {0x2E, 0xFE}, {0x13, 0xCB}, {0x78, 0xFE}};
   for (const Bytes& unit : legal) ASSERT_TRUE(units.frame(unit));

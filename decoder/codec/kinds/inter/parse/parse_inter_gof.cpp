@@ -213,6 +213,9 @@ bool InterGofParser::frame_start(BitReader& r, const SliceEntry& unit, std::uint
   if (may_be_earlier && r.flag("earlier_flag")) earlier_frame(r, place);
   if (r.error()) return false;
   if (frame.repeated) return false;
+  if (gof_.step_delta_flag && unit.layer_group_idx == 0 && place > 0) {
+    frame.step_delta = r.se("frame_step_delta", {kMinStepDelta, kMaxStepDelta}, "R-FRM-10");
+  }
   const bool has_all = place == 0 && gof_.rest.order_flag;
   frame.layer_groups = has_all ? static_cast<std::uint32_t>(gof_.layer_group_size.size())
                                : unit.layer_group_idx + 1;

@@ -50,7 +50,7 @@ Bytes patch_map_of(std::uint32_t num_patches, std::uint32_t patch) {
 // The bits of the default recipe are: up to num_gof_frames_minus1 6, gof_kind 2,
 // frame_pattern_idc 2, exact_flag 1, frame_step_minus1 9, weights 12, learning_flag 1,
 // frame_hash_flag 1, max_earlier_distance 1, num_layer_groups_minus1 1, layer_step_minus1 12,
-// rest_order_flag 1, num_patches 1.
+// rest_order_flag 1, rest_step_minus1 9, frame_step_delta_flag 1, num_patches 1.
 struct Bound {
   const char* rule;
   const char* element;
@@ -91,11 +91,13 @@ TEST(ParseInterGofRanges, ElementsAreTakenUpToTheirBoundsAndNotBeyond) {
          r.num_layer_groups_minus1 = 2;
          r.layer_group_layers_minus1 = {0, v};
        }},
-      {"R-LVL-06", "num_patches", 49, 256,
+      {"R-LVL-06", "num_patches", 59, 256,
        [](auto& r, auto v) {
          r.num_patches = v;
          r.patch_map = patch_map_of(v, 0);
        }},
+      {"R-FRM-01", "rest_step_minus1", 49, 65535,
+       [](auto& r, auto v) { r.rest_step_minus1 = v; }},
       {"R-FRM-05", "pattern_period_log2", 10, 6,
        [](auto& r, auto v) {
          r.pattern = FramePatternRecipe::dyadic(v, 0);
@@ -363,6 +365,28 @@ TEST(ParseFrameUnitRanges, EarlierFramesAreNotInAHigherTemporalLayer) {
   EXPECT_TRUE(parse(1));
   // The bits before are: frame_idx 5, layer_group_idx 1, unit_frames_minus1 1, earlier_flag 1.
   expect_invalid_at(parse(0), "R-FRM-08", "earlier_distance_minus1", 8);
+}
+
+TEST(ParseFrameUnitRanges, StepsOfFramesAreInTheirRange) {
+  InterGofRecipe recipe;
+  recipe.num_gof_frames_minus1 = 8;
+  recipe.frame_step_delta_flag = true;
+  Frames frames(recipe);
+  FrameRecipe shared = frames.unit(0, 4);  // the first frame has no difference
+  shared.frame_step_delta = {-15, 240, 0};
+  ASSERT_TRUE(frames.parse(shared, 4));
+  for (const std::int32_t delta : {-16, 241}) {
+    Frames others(recipe);
+    ASSERT_TRUE(others.parse(others.unit(0), 1));
+    FrameRecipe wrong = others.unit(1);
+    wrong.frame_step_delta = {delta};
+    // The bits before are: frame_idx 3, layer_group_idx 1, unit_frames_minus1 1.
+    expect_invalid_at(others.parse(wrong, 0), "R-FRM-10", "frame_step_delta", 5);
+  }
+  const InterGof gof = frames.units().parser().finish();
+  EXPECT_TRUE(gof.step_delta_flag);
+  const std::int32_t deltas[] = {0, -15, 240, 0, 0};
+  for (std::size_t f = 0; f < 5; ++f) EXPECT_EQ((*gof.frames)[f].step_delta, deltas[f]);
 }
 
 TEST(ParseFrameUnitRanges, FramesWithoutResidualsEndWithTheirFlags) {

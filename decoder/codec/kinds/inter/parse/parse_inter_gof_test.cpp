@@ -31,8 +31,8 @@ struct LegalGof {
 // This one has two layer groups and temporal layers, a dyadic pattern, patches and hashes.
 const LegalGof kDyadic{
     5,
-    {{0x97, 0x91, 0x05, 0x41, 0x00, 0x00, 0x04, 0x00, 0x01, 0x8E, 0xEB, 0x69, 0x7C, 0x88, 0x80,
-      0xAF, 0x97, 0x20},
+    {{0x97, 0x91, 0x05, 0x41, 0x00, 0x00, 0x04, 0x00, 0x01, 0x8E, 0xEB, 0x69, 0x7C, 0x88, 0x2A,
+      0x20, 0xAF, 0x97, 0x20},
      {0xE0, 0x00, 0x03, 0xD6, 0x06, 0x85, 0xD9, 0x82, 0x61, 0x17, 0x80, 0xF8, 0x54, 0xC4, 0x60,
       0xBE, 0x14, 0xD8, 0x38},
      {0xA8, 0x12, 0x34, 0x56, 0x78, 0x9B, 0x18, 0x64, 0x57, 0x04, 0xCD, 0x0C, 0x97},
@@ -43,13 +43,15 @@ const LegalGof kDyadic{
      {0x6A, 0xFF, 0xFF, 0xFF, 0xFF, 0x48},
      {0x5F},
      {0x26, 0xA4, 0xE5, 0xA7, 0x98, 0x10, 0x55, 0x73}},
-    {15, 1, 5, 1, 6, 2, 5, 1, 1},
+    {16, 1, 5, 1, 6, 2, 5, 1, 1},
     {"first_frame 0\nnum_gof_frames_minus1 4\ngof_kind 3\nframe_pattern_idc 2\n"
      "pattern_period_log2 2\ntemporal_layers_minus1 1\nexact_flag 0\n"
      "frame_step_minus1 20 31 65535\ndamping_log2 6\nouter_weight 3\nouter_scale 11\n"
      "learning_flag 1\nprime_log2 5\nframe_hash_flag 1\nmax_earlier_distance 2\n"
      "num_layer_groups_minus1 1\nlayer_group_layers_minus1 1\nlayer_step_minus1 15 9 1\n"
-     "rest_order_flag 0\nnum_patches 3\ncluster_predicted_flag 0\ncluster_idx "
+     "rest_order_flag 0\nrest_step_minus1 20\nframe_step_delta_flag 0\nnum_patches "
+     "3\ncluster_predicted_flag "
+     "0\ncluster_idx "
      "2\ncluster_predicted_flag 1 0\n"
      "cluster_idx 0\ncluster_predicted_flag 1 1 1 0\ncluster_idx 1\n"
      "cluster_predicted_flag 1 1",
@@ -164,6 +166,7 @@ TEST(ParseInterGof, FillsTheSettings) {
   EXPECT_EQ(gof.pattern.temporal_layers, 2U);
   EXPECT_FALSE(gof.exact_flag);
   EXPECT_EQ(gof.step, (std::vector<std::uint32_t>{21, 32, 65536}));
+  EXPECT_EQ(gof.first_step, 21U);
   EXPECT_EQ(gof.weights, (WeightSettings{6, 3, 11, 0}));
   EXPECT_TRUE(gof.learning_flag);
   EXPECT_EQ(gof.prime_log2, 5);
@@ -182,6 +185,7 @@ TEST(ParseInterGof, FillsTheSettings) {
   EXPECT_EQ(other.pattern.temporal_layers, 3U);
   EXPECT_TRUE(other.exact_flag);
   EXPECT_EQ(other.step, std::vector<std::uint32_t>(4, kExactInterStep));
+  EXPECT_EQ(other.first_step, kExactInterStep);
   EXPECT_EQ(other.weights, (WeightSettings{1, 15, 0, 0}));
   EXPECT_FALSE(other.learning_flag);
   EXPECT_EQ(other.layer_group_size, std::vector<std::uint32_t>{3});
@@ -361,7 +365,7 @@ TEST(ParseInterGof, SectionsMustNotStartWithOnes) {
 
 TEST(ParseInterGof, AlignmentIsZero) {
   // The first alignment bit of each unit; a multiple of 8 if there is none.
-  const std::vector<std::vector<std::uint64_t>> at{{115, 3, 5, 8, 9, 10, 7, 8, 8},
+  const std::vector<std::vector<std::uint64_t>> at{{125, 3, 5, 8, 9, 10, 7, 8, 8},
                                                    {106, 6, 16, 11}};
   for (std::size_t g = 0; g < kLegalGofs.size(); ++g) {
     const LegalGof& gof = kLegalGofs[g];

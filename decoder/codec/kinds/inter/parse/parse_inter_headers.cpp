@@ -45,6 +45,11 @@ void parse_inter_settings(BitReader& r, const SequenceHeader& header, std::uint3
   settings.layer_step.assign(num_layers, kMaxLayerStep);
   if (!settings.exact_flag) parse_layer_steps(r, settings.layer_step);
   settings.rest = parse_rest_settings(r, settings.exact_flag);
+  if (!settings.exact_flag) {
+    settings.first_step =
+        r.ue("rest_step_minus1", {0, std::int64_t{kMaxInterStep} - 1}, "R-FRM-01") + 1;
+    settings.step_delta_flag = r.flag("frame_step_delta_flag");
+  }
   settings.num_patches =
       r.ue("num_patches", {0, std::int64_t{header.level().max_clusters}}, "R-LVL-06");
   r.byte_alignment();
