@@ -107,10 +107,9 @@ class Promises(ToolsTest):
                        for frame, decoded in zip(frames, read_pc2(self.path("a.pc2")))
                        for i in range(0, 12, 3)]
             metrics = report["metrics"]
-            # Doubles are 1e-9 apart at these coordinates.
-            self.assertAlmostEqual(metrics["max_error"], math.sqrt(max(squared)), delta=1e-8)
+            self.assertAlmostEqual(metrics["max_error"], math.sqrt(max(squared)), delta=1e-9)
             self.assertAlmostEqual(metrics["rms_error"], math.sqrt(sum(squared) / len(squared)),
-                                   delta=1e-8)
+                                   delta=1e-9)
             self.assertAlmostEqual(report["largest_rounding"], coarse, delta=1e-9)
 
     def test_a_bound_below_the_spacing_of_floats_is_refused(self):

@@ -14,7 +14,7 @@ namespace rlpc {
 struct SingleMesh {
   std::vector<float> xyz;  // 3 per vertex, at least one vertex, all finite
   // Differences of the numbers in the file from the floats in xyz; 0 beyond its size.
-  std::vector<float> left{};
+  std::vector<double> left{};
   std::vector<Triangle> triangles;
   std::vector<MeshPolygon> polygons{};  // only those of more than one triangle, in order
   PolygonCuts cuts{};                   // polygons whose triangles are not a fan
@@ -28,7 +28,8 @@ struct SingleMesh {
 
   // Returns the memory of members that grow while a file is read.
   std::uint64_t memory_bytes() const {
-    return (std::uint64_t{xyz.capacity()} + left.capacity()) * sizeof(float) +
+    return std::uint64_t{xyz.capacity()} * sizeof(float) +
+           std::uint64_t{left.capacity()} * sizeof(double) +
            std::uint64_t{triangles.capacity()} * sizeof(Triangle) +
            std::uint64_t{polygons.capacity()} * sizeof(MeshPolygon) + cuts.memory_bytes() +
            attributes.memory_bytes();

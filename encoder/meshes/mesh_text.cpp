@@ -95,7 +95,7 @@ std::string quoted(std::string_view word) {
 }
 
 float parse_coordinate(std::string_view word, std::optional<std::string>& problem,
-                       float* left) {
+                       double* left) {
   const char* const first = word.data() + (word.starts_with('+') && word.size() > 1 ? 1 : 0);
   const char* const last = word.data() + word.size();
   float value = 0;
@@ -110,7 +110,7 @@ float parse_coordinate(std::string_view word, std::optional<std::string>& proble
   } else if (left != nullptr) {
     double exact = value;
     std::from_chars(first, last, exact);
-    *left = static_cast<float>(exact - value);
+    *left = exact - static_cast<double>(value);
   }
   return value;
 }

@@ -47,7 +47,7 @@ std::string quoted(std::string_view word);
 // Parses all of `word` as a finite float, correctly rounded; otherwise sets `problem`. left: if
 // given, set to the number minus the float.
 float parse_coordinate(std::string_view word, std::optional<std::string>& problem,
-                       float* left = nullptr);
+                       double* left = nullptr);
 
 // Returns all of `word` as a finite number; none: it is not one.
 std::optional<double> parse_number(std::string_view word);

@@ -98,9 +98,17 @@ class ObjParser {
                           " index, as the file has none of these");
   }
 
-  void push(float value, std::vector<float>& list) {
+  template <class T>
+  void push(T value, std::vector<T>& list) {
     if (!limit_.leaves_room(*this, list)) return fail_for_memory();
     list.push_back(value);
+  }
+
+  // Keeps the difference of the last coordinate from its float, where there is one.
+  void keep_left(double left) {
+    if (left == 0.0) return;
+    while (!error_ && mesh_.left.size() + 1 < mesh_.xyz.size()) push(0.0, mesh_.left);
+    if (!error_) push(left, mesh_.left);
   }
 
   // Reads "v x y z" or "v x y z r g b", and notes other contents of the line.
@@ -109,9 +117,9 @@ class ObjParser {
       return fail(words_.line(), "more than 2^32 - 1 vertices");
     }
     for (int axis = 0; axis < 3 && !error_; ++axis) {
-      float left = 0.0F;
+      double left = 0.0;
       push(read_float("a vertex needs three coordinates", &left), mesh_.xyz);
-      push(left, mesh_.left);
+      keep_left(left);
     }
     if (!error_ && limit_.with_attributes) read_rest_of_vertex();
   }
@@ -134,7 +142,7 @@ class ObjParser {
     }
   }
 
-  float read_float(const char* if_none, float* left = nullptr) {
+  float read_float(const char* if_none, double* left = nullptr) {
     const std::string_view word = words_.next();
     if (word.empty()) {
       fail(words_.line(), if_none);
@@ -151,7 +159,7 @@ class ObjParser {
       push(read_float("a texture coordinate needs one number or more"), attributes_.uv());
       const std::string_view word = words_.next();
       std::optional<std::string> problem;
-      push(word.empty() ? 0 : parse_coordinate(word, problem), attributes_.uv());
+      push(word.empty() ? 0.0F : parse_coordinate(word, problem), attributes_.uv());
       if (problem) fail(words_.line(), *problem);
       if (parse_number(words_.next()).value_or(0.0) != 0.0) rest_.add_third_uv();
     } else if (keyword == "vn") {

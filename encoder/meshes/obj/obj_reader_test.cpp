@@ -97,8 +97,8 @@ TEST(ObjReader, RoundsNumbersCorrectly) {
 TEST(ObjReader, KeepsWhatFloatsLeaveOfNumbers) {
   const auto mesh = parse_obj("v 0.1 0.5 -0.3\n", "a.obj");
   ASSERT_TRUE(mesh) << mesh.error().message;
-  const auto left_of = [](double x) { return static_cast<float>(x - static_cast<float>(x)); };
-  EXPECT_EQ(mesh->left, (std::vector<float>{left_of(0.1), 0, left_of(-0.3)}));
+  const auto left_of = [](double x) { return x - static_cast<double>(static_cast<float>(x)); };
+  EXPECT_EQ(mesh->left, (std::vector<double>{left_of(0.1), 0, left_of(-0.3)}));
 }
 
 TEST(ObjReader, RefusesNonFiniteNumbers) {
@@ -194,6 +194,10 @@ TEST(MeshReader, MemoryHasALimit) {
       ++limit.mesh_bytes;
     }
   };
+  // Numbers that floats cannot represent take more; to lack room for them ends the reading,
+  // too.
+  const std::string finer = "v 0.5 0.25 1\nv 0.1 0.2 0.3\n" + kThreeVertices + "f 1 2 3\n";
+  EXPECT_GT(min(parse_obj, finer), 9 * (sizeof(float) + sizeof(double)));
   for (const std::uint64_t bytes :
        {min(parse_obj, obj), min(parse_off, off), min(parse_ply, ply)}) {
     EXPECT_GE(bytes, 9 * sizeof(float) + 6 * sizeof(Triangle));

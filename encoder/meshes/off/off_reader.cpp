@@ -98,7 +98,7 @@ class OffParser {
       } else if (!limit_.leaves_room(mesh_, mesh_.xyz)) {
         problem = memory_problem(limit_.total_bytes);
       } else {
-        mesh_.left.push_back(0.0F);
+        mesh_.left.push_back(0.0);
         mesh_.xyz.push_back(parse_coordinate(word, problem, &mesh_.left.back()));
       }
       if (problem) fail(*problem);

@@ -33,11 +33,11 @@ class TextBody {
 
   float coordinate(PlyType) {
     const std::string_view word = next();
-    left_ = 0.0F;
+    left_ = 0.0;
     return problem_ ? 0 : parse_coordinate(word, problem_, &left_);
   }
   // Returns the last number minus the coordinate that it became.
-  float left() const { return left_; }
+  double left() const { return left_; }
 
   std::int64_t integer(PlyType) {
     const std::string_view word = next();
@@ -72,7 +72,7 @@ class TextBody {
   TextWords words_;
   std::uint64_t bytes_;
   std::uint64_t line_ = 0;
-  float left_ = 0.0F;
+  double left_ = 0.0;
   std::optional<std::string> problem_;
 };
 
@@ -93,7 +93,7 @@ class BinaryBody {
   float coordinate(PlyType type) {
     const double exact = number(type);
     const auto value = static_cast<float>(exact);
-    left_ = static_cast<float>(exact - value);
+    left_ = exact - static_cast<double>(value);
     if (std::isfinite(value)) return value;
     if (!problem_) {
       problem_ = std::string("a coordinate is ") +
@@ -103,7 +103,7 @@ class BinaryBody {
     return 0;
   }
 
-  float left() const { return left_; }
+  double left() const { return left_; }
 
   std::int64_t integer(PlyType type) {
     const std::uint64_t bits = take(type);
@@ -162,7 +162,7 @@ class BinaryBody {
   std::size_t pos_;
   std::size_t last_ = 0;  // first byte of the last value
   bool little_endian_;
-  float left_ = 0.0F;
+  double left_ = 0.0;
   std::optional<std::string> problem_;
 };
 

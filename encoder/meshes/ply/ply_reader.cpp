@@ -142,7 +142,7 @@ class PlyReader {
 
   // Keeps the difference to a float; few files have numbers that floats cannot represent.
   void keep_left(std::size_t coordinate) {
-    if (body_.left() == 0.0F) return;
+    if (body_.left() == 0.0) return;
     if (mesh_.left.empty()) mesh_.left.resize(mesh_.xyz.size());
     mesh_.left[coordinate] = body_.left();
   }

@@ -101,8 +101,8 @@ TEST(PlyReader, KeepsWhatFloatsLeaveOfDoubles) {
   for (const double x : {0.5, 0.1, -0.3}) put(bytes, std::bit_cast<std::uint64_t>(x), 8, true);
   const auto mesh = parse_ply(bytes, "a.ply");
   ASSERT_TRUE(mesh) << mesh.error().message;
-  const auto left_of = [](double x) { return static_cast<float>(x - static_cast<float>(x)); };
-  EXPECT_EQ(mesh->left, (std::vector<float>{0, left_of(0.1), left_of(-0.3)}));
+  const auto left_of = [](double x) { return x - static_cast<double>(static_cast<float>(x)); };
+  EXPECT_EQ(mesh->left, (std::vector<double>{0, left_of(0.1), left_of(-0.3)}));
 }
 
 TEST(PlyReader, ReadsEveryLineEndOfTheHeader) {
