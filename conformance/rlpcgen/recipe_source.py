@@ -299,14 +299,14 @@ class StreamBuilder:
         return _finish(writer.finish(self._program), settings), writer
 
     def _unit(self, recipe, writer, source, unit, code, codes):
+        broken = len(writer.broken)
         source.begin(unit, code, writer.ns)
         with _Hooks(writer, source):
             try:
                 writer.unit(code, _payload(source), lambda data: _change(source, data))
             except (mesh_gates.GateError, stream_writer.WriteError) as error:
                 raise recipes.RecipeError(f"{recipe.path}: {unit.name}: {error}") from error
-        # Once a requirement is broken, units can have other elements than they should.
-        if not writer.broken and source.unused():
+        if len(writer.broken) == broken and source.unused():
             entry = source.unused()[0]
             raise recipes.RecipeError(f"{entry.place}: {entry.name} has values that the unit "
                                       "does not use")

@@ -343,9 +343,9 @@ class StreamWriter:
         self.put_bytes(crc.to_bytes(4, "big"))
 
     def _put_frame_crcs(self):
-        """The hashes of the frames whose last frame unit has been written; 0 after an error."""
+        """The hashes of the frames whose last frame unit has been written."""
         ns = self.ns
-        for number, at in [] if self.broken else self._crcs:
+        for number, at in self._crcs:
             frame = ns["CodedFrames"][number]
             if ns["PlaceOfFrame"][frame] < self._decoded_frames:
                 self._decoded_frames = 0  # it was absent when later ones were decoded
