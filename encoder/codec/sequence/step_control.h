@@ -14,8 +14,8 @@ namespace rlpc {
 // slowly: it depends on how well motion is predicted.
 class StepControl {
  public:
-  // Adds the squared error of a frame, relative to the one that would meet the target.
-  // surplus: that of all frames so far which is left, in the same unit.
+  // Adds the squared error of a frame, relative to the one that would meet the target. surplus:
+  // what all frames so far are below the target, in the same unit.
   void add(double squared_error, double surplus) {
     const double wanted = std::clamp(1.0 + surplus / kFrames, kMinWanted, kMaxWanted);
     log2_ += kGain * 0.5 * det_log2(wanted / std::max(squared_error, kMinError));
@@ -34,12 +34,14 @@ class StepControl {
 
  private:
   static constexpr double kDeltaUnits = 16.0;  // fixed: format
-  static constexpr double kFrames = 15.0;  // fixed: half a second, in which errors are made up
-  static constexpr double kGain = 0.3;     // fixed: errors outlast a few frames
+  // fixed: half a second, in which errors are made up for. 15 to 60 frames, and gains of 0.1 to
+  // 0.3, give the same bytes within 2 % on five animations; 15 ends nearest to the target.
+  static constexpr double kFrames = 15.0;
+  static constexpr double kGain = 0.3;       // fixed: as above
   static constexpr double kMinWanted = 0.5;  // fixed: a guard
-  static constexpr double kMaxWanted = 2.0;  // fixed: the same
+  static constexpr double kMaxWanted = 2.0;  // fixed: a guard
   static constexpr double kMinError = 1e-6;  // fixed: above zero
-  static constexpr double kMaxLog2 = 3.0;    // fixed: the same
+  static constexpr double kMaxLog2 = 3.0;    // fixed: a guard
 
   double log2_ = 0.0;
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "encoder/codec/math/det_math.h"
+
 namespace rlpc {
 namespace {
 
@@ -14,8 +16,8 @@ std::vector<double> equal_factors(double num_vertices, std::size_t num_groups) {
   std::vector<double> wanted;
   for (std::size_t i = 0; i + 1 < num_groups; ++i) {
     const double left = static_cast<double>(num_groups - 1 - i);
-    wanted.push_back(num_vertices *
-                     std::pow(kShareOfBase, left / static_cast<double>(num_groups - 1)));
+    const double octaves = det_log2(kShareOfBase) * left / static_cast<double>(num_groups - 1);
+    wanted.push_back(num_vertices * det_exp2(octaves));
   }
   return wanted;
 }
@@ -36,7 +38,7 @@ std::vector<std::uint32_t> layer_group_sizes(const OrderedMesh& mesh, std::size_
     double lowest_distance = HUGE_VAL;
     for (auto l = static_cast<std::uint32_t>(i); i > 0 && l < end; ++l) {
       const auto below = static_cast<double>(mesh.vertices_of_layers(0, l).size());
-      const double distance = std::abs(std::log(below / std::max(wanted[i - 1], 1.0)));
+      const double distance = std::abs(det_log2(below / wanted[i - 1]));
       if (distance >= lowest_distance) continue;
       lowest_distance = distance;
       first = l;

@@ -248,8 +248,7 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
            t.layer_cuts = cuts;
            t.layer_groups = static_cast<std::uint32_t>(cuts.size()) + 1;
          },
-         "Instead: vertices up to each cut but the last, for example 500,1000,2000; the "
-         "nearest "
+         "Instead: numbers of vertices up to the cuts, for example 500,1000,2000; the nearest "
          "ends of layers are taken")
       ->delimiter(',')
       ->check(CLI::PositiveNumber)
