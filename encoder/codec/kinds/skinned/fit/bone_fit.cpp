@@ -83,32 +83,6 @@ Vec3d rest_of(const Rig& rig, std::uint32_t vertex) {
   return {p[0], p[1], p[2]};
 }
 
-RigBone rig_bone(const TreeBone& bone, const std::vector<Motion>& motion) {
-  RigBone result;
-  result.parent = bone.parent;
-  result.pivot = {bone.pivot(0), bone.pivot(1), bone.pivot(2)};
-  result.pinned = bone.pinned;
-  for (const Motion& m : motion) {
-    const Vec3d origin = moved(m, bone.pivot);
-    RigPose pose{rotation_quaternion(m.leftCols<3>()), {origin(0), origin(1), origin(2)}};
-    if (!result.poses.empty()) keep_sign(result.poses.back().rotation, pose.rotation);
-    result.poses.push_back(pose);
-  }
-  return result;
-}
-
-void put_in_tree_order(const std::vector<TreeBone>& tree, const BoneMotions& motions,
-                       Rig& rig) {
-  std::vector<std::uint32_t> place(tree.size());
-  for (std::size_t i = 0; i < tree.size(); ++i) {
-    place[tree[i].bone] = static_cast<std::uint32_t>(i);
-    rig.bones.push_back(rig_bone(tree[i], motions[tree[i].bone]));
-  }
-  for (auto& weights : rig.weights) {
-    for (RigWeight& w : weights) w.bone = place[w.bone];
-  }
-}
-
 }  // namespace
 
 BoneFit::BoneFit(const SpanFrames& frames, std::span<const Triangle> triangles,
@@ -295,7 +269,7 @@ Rig BoneFit::rig(const BoneSolver& state, std::size_t max_influences, double ste
   BoneMotions motions = fit_frames(settled.motions(), moments, rig);
   const double pin_error = 0.5 * worth;  // pinning saves three of six values per pose
   const std::vector<TreeBone> tree = build_bone_tree(moments, pin_error, motions);
-  put_in_tree_order(tree, motions, rig);
+  put_in_tree(tree, motions, rig);
   return rig;
 }
 

@@ -1,6 +1,7 @@
 #include "encoder/codec/kinds/skinned/fit/bone_tree.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -82,6 +83,20 @@ double pin(const Eigen::Matrix4d& moments, const Vec3d& pivot, const Motions& pa
   return damage;
 }
 
+RigBone rig_bone(const TreeBone& bone, const Motions& motion) {
+  RigBone result;
+  result.parent = bone.parent;
+  result.pivot = {bone.pivot(0), bone.pivot(1), bone.pivot(2)};
+  result.pinned = bone.pinned;
+  for (const Motion& m : motion) {
+    const Vec3d origin = moved(m, bone.pivot);
+    RigPose pose{rotation_quaternion(m.leftCols<3>()), {origin(0), origin(1), origin(2)}};
+    if (!result.poses.empty()) keep_sign(result.poses.back().rotation, pose.rotation);
+    result.poses.push_back(pose);
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<TreeBone> build_bone_tree(const SkinMoments& moments, double pin_error,
@@ -122,6 +137,18 @@ std::vector<TreeBone> build_bone_tree(const SkinMoments& moments, double pin_err
     motions[child.bone] = std::move(pinned);
   }
   return tree;
+}
+
+void put_in_tree(const std::vector<TreeBone>& tree, const std::vector<Motions>& motions,
+                 Rig& rig) {
+  std::vector<std::uint32_t> place(tree.size());
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    place[tree[i].bone] = static_cast<std::uint32_t>(i);
+    rig.bones.push_back(rig_bone(tree[i], motions[tree[i].bone]));
+  }
+  for (auto& weights : rig.weights) {
+    for (RigWeight& w : weights) w.bone = place[w.bone];
+  }
 }
 
 }  // namespace rlpc

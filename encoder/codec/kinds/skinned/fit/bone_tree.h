@@ -6,6 +6,7 @@
 
 #include "encoder/codec/kinds/skinned/fit/bone_poses.h"
 #include "encoder/codec/kinds/skinned/fit/rigid_motion.h"
+#include "encoder/codec/spans/rig.h"
 
 namespace rlpc {
 
@@ -26,5 +27,10 @@ struct TreeBone {
 //   motions  [bone][frame]; those of pinned bones are changed accordingly
 std::vector<TreeBone> build_bone_tree(const SkinMoments& moments, double pin_error,
                                       std::vector<std::vector<Motion>>& motions);
+
+// Gives a rig, which has rest positions and weights, the bones of a tree. The weights refer to
+// motions, then to the bones. Quaternions keep their sign from frame to frame.
+void put_in_tree(const std::vector<TreeBone>& tree,
+                 const std::vector<std::vector<Motion>>& motions, Rig& rig);
 
 }  // namespace rlpc
