@@ -38,7 +38,9 @@ _ENCODER = _GOFS | _RECON | _CHOICES | {"encoder/codec/math", "encoder/codec/res
 _ENCODER_KINDS = _of_kinds("encoder/codec/kinds/{}")
 _SKINNED = "encoder/codec/kinds/skinned"
 _QUANTISE = {_SKINNED + "/fit", _SKINNED + "/tracks"}
-_SKINNED_ROOMS = _QUANTISE | {_SKINNED + "/quantise", _SKINNED + "/search", _SKINNED + "/reuse"}
+_RECOVER = _SKINNED + "/recover"
+_SKINNED_ROOMS = _QUANTISE | {
+    _RECOVER, _SKINNED + "/quantise", _SKINNED + "/search", _SKINNED + "/reuse"}
 # Readers and writers of mesh files know these, and nothing of coding.
 _MESH_FILES = {"common", "common/memory", "common/codec/attributes/attribute_names.h",
                "common/codec/bits/fixed_point.h", "common/codec/mesh", "common/files",
@@ -179,7 +181,8 @@ ROOMS = {
     _SKINNED: _ENCODER | _SKINNED_ROOMS,
     **dict.fromkeys(_QUANTISE, _ENCODER),
     _SKINNED + "/quantise": _ENCODER | _QUANTISE,
-    _SKINNED + "/search": _ENCODER | _QUANTISE | {_SKINNED + "/quantise"},
+    _RECOVER: _ENCODER | {_SKINNED + "/fit"},
+    _SKINNED + "/search": _ENCODER | _QUANTISE | {_RECOVER, _SKINNED + "/quantise"},
     _SKINNED + "/reuse": _ENCODER | _SKINNED_ROOMS - {_SKINNED + "/reuse"},
     "encoder/codec/sequence/choices": _ENCODER | _ENCODER_KINDS | {"encoder/meshes"},
     "encoder/codec/sequence/target": _ENCODER | {"encoder/codec/metrics", "encoder/meshes"},

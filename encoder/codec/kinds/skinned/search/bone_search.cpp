@@ -8,6 +8,7 @@
 
 #include "common/parallel/for_each.h"
 #include "encoder/codec/kinds/skinned/fit/rig_joints.h"
+#include "encoder/codec/kinds/skinned/recover/recovered_rig.h"
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/spans/component_cost.h"
 #include "encoder/codec/spans/lagrangian.h"
@@ -224,33 +225,51 @@ SkinnedTrial BoneSearch::try_requested(const SkinnedTrials& trials) {
   return std::move(*best);
 }
 
-bool BoneSearch::has_input_rig() const {
-  return frames_.input_rig != nullptr && context_.settings.main.bones == 0;
+// Finds the rig of the input or, if there is none, recovers one from the frames. Returns
+// whether there is any.
+bool BoneSearch::find_given_rig() {
+  constexpr double kCertain = 0.99;  // fixed: of the vertices; fitted bones are no rivals then
+  if (is_given_rig_known_) return given_rig_ != nullptr;
+  is_given_rig_known_ = true;
+  const EncoderSettings& settings = context_.settings;
+  if (settings.main.bones != 0) return false;
+  given_rig_ = frames_.input_rig;
+  is_given_rig_certain_ = given_rig_ != nullptr;
+  const bool recovers =
+      !given_rig_ && settings.preset != Preset::kFast && settings.main.influences == 0;
+  if (!recovers) return given_rig_ != nullptr;
+  if (auto recovered = recover_rig(frames_, context_.triangles)) {
+    is_given_rig_certain_ = recovered->explained >= kCertain;
+    given_rig_ = std::make_shared<const Rig>(std::move(recovered->rig));
+  }
+  return given_rig_ != nullptr;
 }
 
-SkinnedCandidate BoneSearch::input_rig(double step) const {
-  Rig rig = *frames_.input_rig;
+SkinnedCandidate BoneSearch::given_rig(double step) const {
+  Rig rig = *given_rig_;
   const double worth =
       lambda(step) * expected_bone_bits(unsteadiness(frames_), frames_, rig.bones.size(), step);
   fix_joints(0.5 * worth, rig);  // saves three of six values per pose
   return {std::move(rig), {}, settings_};
 }
 
-// Whether no bones need to be fitted, as the rig of the input is clearly better than a single
-// bone. In tiny GOFs, where a fit takes a tenth of a second, it is compared with all others.
-bool BoneSearch::follows_input_rig(double step) {
+// Whether no bones need to be fitted, as the given rig is certain, and clearly better than a
+// single bone. In tiny GOFs, where a fit takes a tenth of a second, it is compared with all
+// others.
+bool BoneSearch::follows_given_rig(double step) {
   constexpr std::uint64_t kTiny = std::uint64_t{1} << 15;  // fixed: time; positions
-  if (follows_input_rig_) return *follows_input_rig_;
+  if (follows_given_rig_) return *follows_given_rig_;
   const bool is_tiny = context_.settings.preset != Preset::kFast &&
                        std::uint64_t{frames_.num_vertices} * frames_.num_frames <= kTiny;
-  if (!has_input_rig() || is_tiny) return follows_input_rig_.emplace(false);
+  if (is_tiny || !find_given_rig() || !is_given_rig_certain_)
+    return follows_given_rig_.emplace(false);
   start_all();
   const SkinnedTrials trials(context_, frames_, step);
   std::array<BestTrial, 2> drafts;
   for_each(2, [&](std::size_t i) {
-    drafts[i] = trials.run(i == 0 ? one_bone(step) : input_rig(step));
+    drafts[i] = trials.run(i == 0 ? one_bone(step) : given_rig(step));
   });
-  return follows_input_rig_.emplace(is_clearly_better(*drafts[1], *drafts[0]));
+  return follows_given_rig_.emplace(is_clearly_better(*drafts[1], *drafts[0]));
 }
 
 // Returns bones that may be worth their bits, the most likely first: their expected cost is
@@ -304,7 +323,7 @@ SkinnedCandidate BoneSearch::likeliest(double step) {
   // this fraction of a single one, of which the expected cost is too high: it leaves out what
   // adaptive weights predict.
   constexpr double kWithoutTrial = 0.55;
-  if (follows_input_rig(step)) return input_rig(step);
+  if (follows_given_rig(step)) return given_rig(step);
   grow_all(step);
   const std::vector<Candidate> list = candidates(step);
   const bool fast = context_.settings.preset == Preset::kFast;
@@ -369,9 +388,9 @@ bool BoneSearch::is_clearly_better(const SkinnedTrial& draft, const SkinnedTrial
 SkinnedTrial BoneSearch::search(const SkinnedTrials& trials,
                                 std::optional<double> wanted_error) {
   if (context_.settings.main.bones > 0) return try_requested(trials);
-  if (follows_input_rig(trials.step())) {
+  if (follows_given_rig(trials.step())) {
     BestTrial one = try_one_bone(trials);
-    BestTrial many = trials.run(input_rig(trials.step()));
+    BestTrial many = trials.run(given_rig(trials.step()));
     progress_(kCompared);
     std::array<BestTrial, 2> both{std::move(one), std::move(many)};
     return std::move(*both[best_of(both, trials, wanted_error)]);
@@ -379,7 +398,7 @@ SkinnedTrial BoneSearch::search(const SkinnedTrials& trials,
   grow_all(trials.step());
   std::vector<BestTrial> drafts;
   drafts.emplace_back(try_one_bone(trials));
-  if (has_input_rig()) drafts.emplace_back(trials.run(input_rig(trials.step())));
+  if (find_given_rig()) drafts.emplace_back(trials.run(given_rig(trials.step())));
   const std::size_t num_given = drafts.size();  // not fitted
   const std::vector<Candidate> list = candidates(trials.step());
   drafts.resize(num_given + list.size());

@@ -44,6 +44,7 @@ class BoneSearch {
   void release() {
     growths_.clear();
     one_.reset();
+    given_rig_.reset();
   }
 
  private:
@@ -78,9 +79,9 @@ class BoneSearch {
   SkinnedCandidate candidate(Growth& growth, Growth::Bones& bones, double step) const;
   SkinnedTrial try_one_bone(const SkinnedTrials& trials);
   SkinnedTrial try_requested(const SkinnedTrials& trials);
-  bool has_input_rig() const;
-  SkinnedCandidate input_rig(double step) const;
-  bool follows_input_rig(double step);
+  bool find_given_rig();
+  SkinnedCandidate given_rig(double step) const;
+  bool follows_given_rig(double step);
   std::vector<Candidate> candidates(double step);
   bool is_better(const SkinnedTrial& second, const SkinnedTrial& first,
                  const SkinnedTrials& trials, double wanted_error) const;
@@ -99,10 +100,12 @@ class BoneSearch {
   // Ratio of the costs of a single bone: the expected cost ignores what adaptive weights
   // predict. At most 1, as other errors of the estimate are common to all numbers of bones.
   double actual_to_expected_ = 1.0;
-  bool is_compared_ = false;  // actual_to_expected_ is known
-  // Whether the rig of the input is clearly better than a single bone; none: not yet known.
-  std::optional<bool> follows_input_rig_;
-  std::optional<SkinnedAnalysis> one_;  // draft of a single bone
+  bool is_compared_ = false;              // actual_to_expected_ is known
+  std::shared_ptr<const Rig> given_rig_;  // of the input, or recovered from the frames
+  bool is_given_rig_known_ = false;
+  bool is_given_rig_certain_ = false;  // of the input, or it moves nearly all vertices exactly
+  std::optional<bool> follows_given_rig_;  // none: not yet known
+  std::optional<SkinnedAnalysis> one_;     // draft of a single bone
   std::function<void(double)> progress_ = [](double) {};
 };
 

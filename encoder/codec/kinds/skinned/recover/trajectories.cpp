@@ -1,0 +1,73 @@
+#include "encoder/codec/kinds/skinned/recover/trajectories.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rlpc {
+
+Trajectories::Trajectories(const SpanFrames& frames, std::uint32_t max_frames)
+    : frames_(frames) {
+  const std::uint32_t count = std::min(frames.num_frames, max_frames);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint64_t place =
+        count == 1 ? 0 : std::uint64_t{i} * (frames.num_frames - 1) / (count - 1);
+    chosen_.push_back(static_cast<std::uint32_t>(place));
+  }
+  for (const std::uint32_t f : chosen_) {
+    Vec3d sum = Vec3d::Zero();
+    for (std::uint32_t v = 0; v < frames.num_vertices; ++v) {
+      const double* p = frames.at(f, v);
+      sum += Vec3d(p[0], p[1], p[2]);
+    }
+    centre_.push_back(sum / frames.num_vertices);
+  }
+  double square = 0.0;
+  for (std::size_t f = 0; f < count; ++f) {
+    for (std::size_t v = 0; v < num_vertices(); ++v) square += centred(f, v).squaredNorm();
+  }
+  extent_ = std::sqrt(square / (3.0 * static_cast<double>(count * num_vertices())));
+}
+
+Vec3d Trajectories::centred(std::size_t frame, std::size_t vertex) const {
+  const double* p = frames_.at(chosen_[frame], static_cast<std::uint32_t>(vertex));
+  return Vec3d(p[0], p[1], p[2]) - centre_[frame];
+}
+
+Vec3d Trajectories::position(std::size_t frame, std::size_t vertex) const {
+  return extent_ > 0.0 ? Vec3d(centred(frame, vertex) / extent_) : Vec3d(Vec3d::Zero());
+}
+
+std::vector<Vec3d> Trajectories::of(std::size_t vertex) const {
+  std::vector<Vec3d> result;
+  for (std::size_t f = 0; f < chosen_.size(); ++f) result.push_back(position(f, vertex));
+  return result;
+}
+
+VertexRings vertex_rings(std::size_t num_vertices, std::span<const Triangle> triangles) {
+  VertexRings rings(num_vertices);
+  for (const Triangle& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      rings[t[k]].push_back(t[(k + 1) % 3]);
+      rings[t[k]].push_back(t[(k + 2) % 3]);
+    }
+  }
+  for (auto& ring : rings) {
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+  }
+  return rings;
+}
+
+std::vector<std::uint32_t> vertices_around(const VertexRings& rings, std::uint32_t vertex,
+                                           std::size_t count) {
+  std::vector<std::uint32_t> found{vertex};
+  for (std::size_t i = 0; i < found.size() && found.size() < count; ++i) {
+    for (const std::uint32_t v : rings[found[i]]) {
+      if (found.size() == count) break;
+      if (std::find(found.begin(), found.end(), v) == found.end()) found.push_back(v);
+    }
+  }
+  return found;
+}
+
+}  // namespace rlpc

@@ -1,0 +1,46 @@
+// Trajectories of the vertices of a span, and which vertices are near each other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/codec/mesh/mesh.h"
+#include "encoder/codec/kinds/skinned/fit/rigid_motion.h"
+#include "encoder/codec/spans/span_frames.h"
+
+namespace rlpc {
+
+// Positions in a sample of the frames, relative to the centre of all vertices in each frame, in
+// extents: the RMS distance of a coordinate from that centre.
+class Trajectories {
+ public:
+  // Keeps a reference to the frames: at least one, with at least one vertex. Takes max_frames
+  // evenly spaced ones, or all if there are fewer; the first is one of them.
+  Trajectories(const SpanFrames& frames, std::uint32_t max_frames);
+
+  std::size_t num_frames() const { return chosen_.size(); }  // of the sample
+  std::size_t num_vertices() const { return frames_.num_vertices; }
+  double extent() const { return extent_; }  // grid units; 0: all vertices are in one place
+  Vec3d position(std::size_t frame, std::size_t vertex) const;
+  std::vector<Vec3d> of(std::size_t vertex) const;  // [frame]
+
+ private:
+  Vec3d centred(std::size_t frame, std::size_t vertex) const;
+
+  const SpanFrames& frames_;
+  std::vector<std::uint32_t> chosen_;  // numbers of the frames
+  std::vector<Vec3d> centre_;          // [frame], grid units
+  double extent_ = 0.0;
+};
+
+// [vertex]: the vertices that it shares a triangle with, ascending.
+using VertexRings = std::vector<std::vector<std::uint32_t>>;
+VertexRings vertex_rings(std::size_t num_vertices, std::span<const Triangle> triangles);
+
+// Returns a vertex and those that are nearest to it along edges, at most `count` in all.
+std::vector<std::uint32_t> vertices_around(const VertexRings& rings, std::uint32_t vertex,
+                                           std::size_t count);
+
+}  // namespace rlpc
