@@ -89,12 +89,6 @@ Vec3d curl(const Eigen::Matrix3d& k) {
   return {k(2, 1) - k(1, 2), k(0, 2) - k(2, 0), k(1, 0) - k(0, 1)};
 }
 
-Eigen::Matrix3d cross_matrix(const Vec3d& a) {
-  Eigen::Matrix3d m;
-  m << 0.0, -a(2), a(1), a(2), 0.0, -a(0), -a(1), a(0), 0.0;
-  return m;
-}
-
 // Returns the sum over the vertices of w_b w_c J_b^T J_c. J = (-[R p]x, 1) is the derivative of
 // the position R p + t with respect to a rotation vector, applied after R, and the translation
 // t.

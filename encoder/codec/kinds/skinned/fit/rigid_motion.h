@@ -18,6 +18,13 @@ using UnitQuaternion = std::array<double, 4>;  // w, x, y, z
 inline Eigen::Vector4d homogeneous(const Vec3d& p) { return {p(0), p(1), p(2), 1.0}; }
 inline Vec3d moved(const Motion& m, const Vec3d& x) { return m.leftCols<3>() * x + m.col(3); }
 
+// Returns the matrix that maps x to the cross product of a and x.
+inline Eigen::Matrix3d cross_matrix(const Vec3d& a) {
+  Eigen::Matrix3d m;
+  m << 0.0, -a(2), a(1), a(2), 0.0, -a(0), -a(1), a(0), 0.0;
+  return m;
+}
+
 Eigen::Matrix3d rotation_matrix(const UnitQuaternion& unit);
 UnitQuaternion normalised(const UnitQuaternion& q);
 UnitQuaternion rotation_quaternion(const Eigen::Matrix3d& rotation);

@@ -290,14 +290,6 @@ class Connection {
     }
   }
 
-  // The origin of an anchored bone in a frame.
-  Vec3d origin(std::size_t bone, std::size_t frame) const {
-    const auto& anchors = chains_.bones[bone].anchors;
-    Vec3d sum = Vec3d::Zero();
-    for (const std::uint32_t v : anchors) sum += t_.position(frame, v);
-    return sum / static_cast<double>(anchors.size());
-  }
-
   // Finds the points at which anchored bones are joined, first those between bones that share
   // many patches.
   void find_joints() {
@@ -311,8 +303,11 @@ class Connection {
     const std::size_t n = num_bones();
     std::vector<std::vector<Vec3d>> origins(n);
     for (std::size_t b = 0; b < n; ++b) {
-      if (chains_.bones[b].anchors.empty()) continue;
-      for (std::size_t f = 0; f < t_.num_frames(); ++f) origins[b].push_back(origin(b, f));
+      const auto& anchors = chains_.bones[b].anchors;
+      if (anchors.empty()) continue;
+      for (std::size_t f = 0; f < t_.num_frames(); ++f) {
+        origins[b].push_back(t_.mean(f, anchors));
+      }
     }
     std::vector<Candidate> candidates;
     for (std::size_t a = 0; a < n; ++a) {

@@ -15,7 +15,6 @@ namespace {
 constexpr std::size_t kFirst = 64;  // fixed: patches that show whether a mesh was skinned
 
 // Returns the RMS difference of the elements of two rotations.
-
 double difference(const Rotations& a, const Rotations& b) {
   constexpr std::size_t kElements = 9;  // fixed: of a matrix
   double sum = 0.0;

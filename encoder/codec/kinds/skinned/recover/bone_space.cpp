@@ -69,9 +69,7 @@ std::vector<std::vector<double>> BoneSpace::columns_of(const BoneRotations& rota
     if (anchors.empty()) continue;
     std::vector<double>& column = columns.emplace_back();
     for (std::size_t f = 0; f < t_.num_frames(); ++f) {
-      Vec3d mean = Vec3d::Zero();
-      for (const std::uint32_t v : anchors) mean += t_.position(f, v);
-      mean /= static_cast<double>(anchors.size());
+      const Vec3d mean = t_.mean(f, anchors);
       column.insert(column.end(), mean.data(), mean.data() + 3);
     }
   }

@@ -1,5 +1,6 @@
 #include "encoder/codec/kinds/skinned/recover/point_equations.h"
 
+#include <cstddef>
 #include <utility>
 
 #include "encoder/codec/kinds/skinned/recover/skin_vertex.h"
@@ -8,12 +9,6 @@
 
 namespace rlpc {
 namespace {
-
-Eigen::Matrix3d cross_matrix(const Vec3d& a) {
-  Eigen::Matrix3d m;
-  m << 0.0, -a(2), a(1), a(2), 0.0, -a(0), -a(1), a(0), 0.0;
-  return m;
-}
 
 // Makes the equations of a point, from which its rest position, and its weights if they vary,
 // are eliminated.
@@ -24,8 +19,16 @@ class PointEquations {
 
   StepEquations make() {
     find_sums();
-    add_bones();
-    add_point();
+    const std::vector<double> by_point = point_derivatives(bones_, point_.part, point_.weights,
+                                                           point_.rest, point_.weights_vary);
+    const std::size_t own = by_point.size() / size_;
+    add_bones(own);
+    const std::size_t count = equations_.unknowns.size();
+    for (std::size_t s = 0; s < size_; ++s) {
+      for (std::size_t k = 0; k < own; ++k) {
+        derivatives_[s * (count + own) + count + k] = by_point[s * own + k];
+      }
+    }
     std::vector<double> moved(size_, 0.0);
     for (const RigWeight& w : point_.weights) {
       bones_.add_moved(point_.part, w.bone, point_.rest, w.weight, moved);
@@ -35,7 +38,7 @@ class PointEquations {
     for (std::size_t s = 0; s < size_; ++s) {
       left[s] = (point_.wanted.empty() ? 0.0 : point_.wanted[s]) - gx[s];
     }
-    return eliminated(left);
+    return eliminated(own, left);
   }
 
  private:
@@ -73,75 +76,66 @@ class PointEquations {
     }
   }
 
-  // Adds the derivatives of the coordinates with respect to turns and pivots.
-  void add_bones() {
+  // Adds the derivatives of the coordinates with respect to turns and pivots, and leaves room
+  // for those with respect to unknowns of the point.
+  void add_bones(std::size_t own) {
     const std::size_t blocks = point_.part.blocks.size();
-    const std::size_t count = equations_.unknowns.size();
-    by_bones_.assign(size_ * count, 0.0);
+    const std::size_t width = equations_.unknowns.size() + own;
+    derivatives_.assign(size_ * width, 0.0);
     for (std::size_t g = 0; g < blocks; ++g) {
       if (column_[g] == kUnused) continue;
       const std::uint32_t bone = point_.part.blocks[g];
       const Eigen::Matrix3d& turn = bones_.turn(bone);
       const Vec3d lever = next_[g] - passing_[g] * bones_.pivot(bone);
-      add_block(-turn * cross_matrix(lever), 3 * g, column_[g], count, by_bones_);
-      add_block(-passing_[g] * turn, 3 * g, column_[g] + 3, count, by_bones_);
+      add_block(-turn * cross_matrix(lever), 3 * g, column_[g], width, derivatives_);
+      add_block(-passing_[g] * turn, 3 * g, column_[g] + 3, width, derivatives_);
       for (std::size_t e = 0; e < blocks; ++e) {
         const double weight = handed_[g * blocks + e];
         if (weight == 0.0) continue;
-        add_block(weight * turn, 3 * g, column_[e] + 3, count, by_bones_);
+        add_block(weight * turn, 3 * g, column_[e] + 3, width, derivatives_);
       }
     }
   }
 
-  // Adds those with respect to the rest position and all weights but the last.
-  void add_point() {
-    const std::size_t others = point_.weights_vary ? point_.weights.size() - 1 : 0;
-    own_ = 3 + others;
-    by_point_.assign(size_ * own_, 0.0);
-    std::vector<double> last(size_, 0.0);
-    bones_.add_moved(point_.part, point_.weights.back().bone, point_.rest, 1.0, last);
-    for (std::size_t k = 0; k < point_.weights.size(); ++k) {
-      const RigWeight& w = point_.weights[k];
-      add_block(w.weight * bones_.turn(w.bone), point_.part.place(w.bone), 0, own_, by_point_);
-      if (k >= others) continue;
-      std::vector<double> one(size_, 0.0);
-      bones_.add_moved(point_.part, w.bone, point_.rest, 1.0, one);
-      for (std::size_t s = 0; s < size_; ++s) by_point_[s * own_ + 3 + k] = one[s] - last[s];
-    }
-  }
-
-  // left: products of what is left with the coordinates
-  StepEquations eliminated(const std::vector<double>& left) {
+  // Eliminates the last unknowns, those of the point.
+  //
+  //   own   their number
+  //   left  products of what is left with the coordinates
+  StepEquations eliminated(std::size_t own, const std::vector<double>& left) {
     constexpr double kRegular = 1e-9;  // fixed: directions that frames leave open
     const std::size_t count = equations_.unknowns.size();
-    NormalEquations bones = normal_equations(point_.part.gram, by_bones_, left, count);
-    NormalEquations own = normal_equations(point_.part.gram, by_point_, left, own_);
-    const std::vector<double> along = matrix_product(point_.part.gram, size_, by_bones_, count);
-    std::vector<double> both(own_ * count, 0.0);
-    for (std::size_t s = 0; s < size_; ++s) {
-      for (std::size_t k = 0; k < own_; ++k) {
-        subtract_multiple(-by_point_[s * own_ + k], std::span(along).subspan(s * count, count),
-                          std::span(both).subspan(k * count, count));
-      }
+    const std::size_t all = count + own;
+    const NormalEquations e = normal_equations(point_.part.gram, derivatives_, left, all);
+    std::vector<double> own_a;
+    std::vector<double> own_b(e.b.begin() + static_cast<std::ptrdiff_t>(count), e.b.end());
+    std::vector<double> both;  // [own][count]
+    for (std::size_t k = count; k < all; ++k) {
+      const auto row = e.a.begin() + static_cast<std::ptrdiff_t>(k * all);
+      both.insert(both.end(), row, row + static_cast<std::ptrdiff_t>(count));
+      own_a.insert(own_a.end(), row + static_cast<std::ptrdiff_t>(count),
+                   row + static_cast<std::ptrdiff_t>(all));
     }
-    for (std::size_t k = 0; k < own_; ++k) {
-      own.a[k * own_ + k] =
-          own.a[k * own_ + k] * (1.0 + kRegular) + (point_.weights_vary ? 0.0 : kRegular);
+    for (std::size_t k = 0; k < own; ++k) {
+      double& diagonal = own_a[k * own + k];
+      diagonal = diagonal * (1.0 + kRegular) + (point_.weights_vary ? 0.0 : kRegular);
     }
-    const SymmetricSystem system(std::move(own.a), own_);
+    const SymmetricSystem system(std::move(own_a), own);
     std::vector<double> through = both;
     system.solve(through, count);
-    system.solve(own.b);
-    for (std::size_t k = 0; k < own_; ++k) {
+    system.solve(own_b);
+    for (std::size_t p = 0; p < count; ++p) {
+      const auto row = e.a.begin() + static_cast<std::ptrdiff_t>(p * all);
+      equations_.a.insert(equations_.a.end(), row, row + static_cast<std::ptrdiff_t>(count));
+      equations_.b.push_back(e.b[p]);
+    }
+    for (std::size_t k = 0; k < own; ++k) {
       const std::span<const double> row = std::span(through).subspan(k * count, count);
       for (std::size_t p = 0; p < count; ++p) {
         const double value = both[k * count + p];
-        bones.b[p] -= value * own.b[k];
-        subtract_multiple(value, row, std::span(bones.a).subspan(p * count, count));
+        equations_.b[p] -= value * own_b[k];
+        subtract_multiple(value, row, std::span(equations_.a).subspan(p * count, count));
       }
     }
-    equations_.a = std::move(bones.a);
-    equations_.b = std::move(bones.b);
     return std::move(equations_);
   }
 
@@ -154,9 +148,7 @@ class PointEquations {
   std::vector<Vec3d> next_;          // [block]
   std::vector<double> handed_;       // [block][block after it]
   std::vector<std::size_t> column_;  // [block], its first unknown; kUnused: not on a path
-  std::vector<double> by_bones_;     // [size][unknown]
-  std::size_t own_ = 0;
-  std::vector<double> by_point_;  // [size][own unknown]
+  std::vector<double> derivatives_;  // [size][unknown], those of the point last
   StepEquations equations_;
 };
 

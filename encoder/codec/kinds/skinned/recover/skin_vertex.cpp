@@ -51,6 +51,26 @@ void add_block(const Eigen::Matrix3d& m, std::size_t row, std::size_t column, st
   }
 }
 
+std::vector<double> point_derivatives(const PlacedBones& bones, const BoneSpace::Part& part,
+                                      std::span<const RigWeight> weights, const Vec3d& rest,
+                                      bool weights_vary) {
+  const std::size_t size = part.size();
+  const std::size_t others = weights_vary ? weights.size() - 1 : 0;
+  const std::size_t count = 3 + others;
+  std::vector<double> d(size * count, 0.0);
+  std::vector<double> last(size, 0.0);
+  bones.add_moved(part, weights.back().bone, rest, 1.0, last);
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const RigWeight& w = weights[k];
+    add_block(w.weight * bones.turn(w.bone), part.place(w.bone), 0, count, d);
+    if (k >= others) continue;
+    std::vector<double> one(size, 0.0);
+    bones.add_moved(part, w.bone, rest, 1.0, one);
+    for (std::size_t s = 0; s < size; ++s) d[s * count + 3 + k] = one[s] - last[s];
+  }
+  return d;
+}
+
 SkinVertex::SkinVertex(const PlacedBones& bones, std::span<const Vec3d> trajectory,
                        std::vector<std::uint32_t> candidates)
     : products_(bones.space().products(trajectory)), fit_{trajectory[0], {}, 0.0} {
@@ -169,17 +189,7 @@ void SkinVertex::polish(const PlacedBones& bones) {
     const Vec3d rest = fit_.rest;
     const std::size_t others = weights.size() - 1;  // the last weight follows from the others
     const std::size_t unknowns = 3 + others;
-    std::vector<double> d(size * unknowns, 0.0);
-    std::vector<double> last(size, 0.0);
-    bones.add_moved(part_, weights.back().bone, rest, 1.0, last);
-    for (std::size_t k = 0; k < weights.size(); ++k) {
-      const RigWeight& w = weights[k];
-      add_block(w.weight * bones.turn(w.bone), part_.place(w.bone), 0, unknowns, d);
-      if (k == others) break;
-      std::vector<double> one(size, 0.0);
-      bones.add_moved(part_, w.bone, rest, 1.0, one);
-      for (std::size_t s = 0; s < size; ++s) d[s * unknowns + 3 + k] = one[s] - last[s];
-    }
+    const std::vector<double> d = point_derivatives(bones, part_, weights, rest, true);
     std::vector<double> left = wanted_;
     const std::vector<double> gx = times(part_.gram, moved(bones));
     for (std::size_t s = 0; s < size; ++s) left[s] -= gx[s];

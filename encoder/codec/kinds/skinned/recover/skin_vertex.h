@@ -69,6 +69,12 @@ struct NormalEquations {
 NormalEquations normal_equations(const std::vector<double>& gram, const std::vector<double>& d,
                                  const std::vector<double>& products, std::size_t count);
 
+// Returns the derivatives of the coordinates of a point with respect to its rest position and,
+// if the weights vary so that their sum stays, all weights but the last: [size][count].
+std::vector<double> point_derivatives(const PlacedBones& bones, const BoneSpace::Part& part,
+                                      std::span<const RigWeight> weights, const Vec3d& rest,
+                                      bool weights_vary);
+
 // Adds a 3 x 3 matrix to a part of a matrix with `width` columns.
 void add_block(const Eigen::Matrix3d& m, std::size_t row, std::size_t column, std::size_t width,
                std::vector<double>& to);

@@ -43,6 +43,12 @@ std::vector<Vec3d> Trajectories::of(std::size_t vertex) const {
   return result;
 }
 
+Vec3d Trajectories::mean(std::size_t frame, std::span<const std::uint32_t> vertices) const {
+  Vec3d sum = Vec3d::Zero();
+  for (const std::uint32_t v : vertices) sum += position(frame, v);
+  return sum / static_cast<double>(vertices.size());
+}
+
 VertexRings vertex_rings(std::size_t num_vertices, std::span<const Triangle> triangles) {
   VertexRings rings(num_vertices);
   for (const Triangle& t : triangles) {

@@ -25,6 +25,8 @@ class Trajectories {
   double extent() const { return extent_; }  // grid units; 0: all vertices are in one place
   Vec3d position(std::size_t frame, std::size_t vertex) const;
   std::vector<Vec3d> of(std::size_t vertex) const;  // [frame]
+  // Returns the mean position of some vertices: at least one.
+  Vec3d mean(std::size_t frame, std::span<const std::uint32_t> vertices) const;
 
  private:
   Vec3d centred(std::size_t frame, std::size_t vertex) const;

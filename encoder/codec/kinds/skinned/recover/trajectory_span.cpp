@@ -71,9 +71,7 @@ TrajectorySpan::TrajectorySpan(const Trajectories& trajectories,
   const std::size_t n = vertices.size();
   std::vector<double> rows(3 * num_frames_ * n);  // [3 * frame][vertex]
   for (std::size_t f = 0; f < num_frames_; ++f) {
-    Vec3d mean = Vec3d::Zero();
-    for (const std::uint32_t v : vertices) mean += trajectories.position(f, v);
-    mean /= static_cast<double>(n);
+    const Vec3d mean = trajectories.mean(f, vertices);
     for (std::size_t i = 0; i < n; ++i) {
       const Vec3d p = trajectories.position(f, vertices[i]) - mean;
       for (std::size_t c = 0; c < 3; ++c) {
