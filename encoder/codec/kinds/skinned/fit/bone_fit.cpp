@@ -9,6 +9,7 @@
 #include "encoder/codec/kinds/skinned/fit/bone_estimate.h"
 #include "encoder/codec/kinds/skinned/fit/bone_tree.h"
 #include "encoder/codec/kinds/skinned/fit/skin_sums.h"
+#include "encoder/codec/kinds/skinned/fit/vertex_rings.h"
 #include "encoder/codec/spans/lagrangian.h"
 
 namespace rlpc {
@@ -41,25 +42,8 @@ std::vector<Vec3d> centres(const SpanFrames& frames) {
   return result;
 }
 
-using Neighbours = std::vector<std::vector<std::uint32_t>>;
-
-Neighbours neighbours_of(std::uint32_t num_vertices, std::span<const Triangle> triangles) {
-  Neighbours result(num_vertices);
-  for (const Triangle& t : triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      result[t[k]].push_back(t[(k + 1) % 3]);
-      result[t[k]].push_back(t[(k + 2) % 3]);
-    }
-  }
-  for (auto& n : result) {
-    std::sort(n.begin(), n.end());
-    n.erase(std::unique(n.begin(), n.end()), n.end());
-  }
-  return result;
-}
-
 // Returns a vertex, then its neighbours, then their neighbours if the first ring is small.
-std::vector<std::uint32_t> patch_around(const Neighbours& neighbours, std::uint32_t vertex) {
+std::vector<std::uint32_t> patch_around(const VertexRings& neighbours, std::uint32_t vertex) {
   // tuned (off: 1): Patches of fewer vertices than this are extended by a second ring. The
   // motion of too small a patch is not determined well enough to seed a bone.
   constexpr std::size_t kSmall = 6;
@@ -111,7 +95,7 @@ BoneSample BoneFit::sample_of(std::span<const Triangle> triangles) const {
   const std::uint32_t n = frames_.num_vertices;
   const std::uint32_t seeds =
       n <= options_.sample_vertices ? n : options_.sample_vertices / kPatchSize;
-  const Neighbours neighbours = neighbours_of(n, triangles);
+  const VertexRings neighbours = vertex_rings(n, triangles);
   BoneSample sample;
   sample.num_frames = chosen_.size();
   sample.positions.reserve(chosen_.size() * std::min(n, options_.sample_vertices));

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "encoder/codec/kinds/skinned/fit/vertex_rings.h"
 #include "encoder/codec/kinds/skinned/recover/bone_rotations.h"
 #include "encoder/codec/kinds/skinned/recover/trajectories.h"
 

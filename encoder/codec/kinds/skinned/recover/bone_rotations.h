@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "encoder/codec/kinds/skinned/fit/vertex_rings.h"
 #include "encoder/codec/kinds/skinned/recover/trajectories.h"
 #include "encoder/codec/kinds/skinned/recover/trajectory_span.h"
 

@@ -9,6 +9,7 @@
 #include "encoder/codec/kinds/skinned/fit/bone_poses.h"
 #include "encoder/codec/kinds/skinned/fit/bone_tree.h"
 #include "encoder/codec/kinds/skinned/fit/skin_sums.h"
+#include "encoder/codec/kinds/skinned/fit/vertex_rings.h"
 #include "encoder/codec/kinds/skinned/recover/bone_chains.h"
 #include "encoder/codec/kinds/skinned/recover/bone_rotations.h"
 #include "encoder/codec/kinds/skinned/recover/bone_space.h"

@@ -1,4 +1,4 @@
-// Trajectories of the vertices of a span, and which vertices are near each other.
+// Trajectories of the vertices of a span.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "common/codec/mesh/mesh.h"
 #include "encoder/codec/kinds/skinned/fit/rigid_motion.h"
 #include "encoder/codec/spans/span_frames.h"
 
@@ -36,13 +35,5 @@ class Trajectories {
   std::vector<Vec3d> centre_;          // [frame], grid units
   double extent_ = 0.0;
 };
-
-// [vertex]: the vertices that it shares a triangle with, ascending.
-using VertexRings = std::vector<std::vector<std::uint32_t>>;
-VertexRings vertex_rings(std::size_t num_vertices, std::span<const Triangle> triangles);
-
-// Returns a vertex and those that are nearest to it along edges, at most `count` in all.
-std::vector<std::uint32_t> vertices_around(const VertexRings& rings, std::uint32_t vertex,
-                                           std::size_t count);
 
 }  // namespace rlpc

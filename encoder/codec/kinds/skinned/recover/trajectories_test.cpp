@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/codec/mesh/mesh.h"
+#include "encoder/codec/kinds/skinned/fit/vertex_rings.h"
 #include "encoder/codec/spans/span_frames.h"
 #include "encoder/testing/random_points.h"
 
