@@ -23,8 +23,16 @@ std::vector<double> values_of(std::span<const Vec3d> trajectory) {
 
 BoneSpace::BoneSpace(const Trajectories& trajectories, const BoneRotations& rotations,
                      const BoneChains& chains)
-    : t_(trajectories), num_bones_(rotations.bones.size()) {
-  find_paths(chains);
+    : t_(trajectories),
+      num_bones_(rotations.bones.size()),
+      path_(num_bones_),
+      origin_(num_bones_, 0) {
+  for (const std::size_t b : chains.order) {
+    if (chains.bones[b].anchors.empty()) continue;
+    path_[b] = {static_cast<std::uint32_t>(b)};
+    origin_[b] = order_.size();
+    order_.push_back(b);
+  }
   const std::vector<std::vector<double>> columns = columns_of(rotations, chains);
   width_ = columns.size();
   const std::size_t rows = 3 * t_.num_frames();
@@ -38,19 +46,16 @@ BoneSpace::BoneSpace(const Trajectories& trajectories, const BoneRotations& rota
   }
 }
 
-void BoneSpace::find_paths(const BoneChains& chains) {
-  path_.resize(num_bones_);
-  origin_.resize(num_bones_);
-  for (const std::size_t b : chains.order) {
-    const BoneChains::Bone& bone = chains.bones[b];
-    if (bone.anchors.empty()) {
-      path_[b] = path_[bone.parent];
-      origin_[b] = origin_[bone.parent];
-    } else {
-      origin_[b] = num_origins_++;
-    }
-    path_[b].push_back(static_cast<std::uint32_t>(b));
-  }
+void BoneSpace::hang(std::size_t bone, std::size_t parent) {
+  path_[bone] = path_[parent];
+  path_[bone].push_back(static_cast<std::uint32_t>(bone));
+  origin_[bone] = origin_[parent];
+  order_.push_back(bone);
+}
+
+void BoneSpace::let_go(std::size_t bone) {
+  path_[bone].clear();
+  order_.pop_back();
 }
 
 std::vector<std::vector<double>> BoneSpace::columns_of(const BoneRotations& rotations,
@@ -64,9 +69,8 @@ std::vector<std::vector<double>> BoneSpace::columns_of(const BoneRotations& rota
       }
     }
   }
-  for (const std::size_t b : chains.order) {
+  for (const std::size_t b : order_) {
     const auto& anchors = chains.bones[b].anchors;
-    if (anchors.empty()) continue;
     std::vector<double>& column = columns.emplace_back();
     for (std::size_t f = 0; f < t_.num_frames(); ++f) {
       const Vec3d mean = t_.mean(f, anchors);

@@ -23,7 +23,7 @@ namespace rlpc {
 // depend on the number of frames.
 class BoneSpace {
  public:
-  // Keeps a reference to the trajectories.
+  // Starts with the anchored bones. Keeps a reference to the trajectories.
   BoneSpace(const Trajectories& trajectories, const BoneRotations& rotations,
             const BoneChains& chains);
 
@@ -32,10 +32,19 @@ class BoneSpace {
   // Coordinates: three for each bone, and one for each origin.
   std::size_t block(std::size_t bone) const { return 3 * bone; }
   std::size_t origin(std::size_t bone) const { return 3 * num_bones_ + origin_[bone]; }
-  // Returns the bones from an anchored one to this one, each the parent of the next. Empty: the
-  // bone has no place.
-  const std::vector<std::uint32_t>& path(std::size_t bone) const { return path_[bone]; }
+  double gram(std::size_t i, std::size_t j) const { return gram_[i * width_ + j]; }
+
+  // Hangs a bone without a place from one that has one.
+  void hang(std::size_t bone, std::size_t parent);
+  // Undoes the last hang().
+  void let_go(std::size_t bone);
+  // Returns the bones that have a place, parents first.
+  const std::vector<std::size_t>& order() const { return order_; }
+  bool has_place(std::size_t bone) const { return !path_[bone].empty(); }
   bool is_anchored(std::size_t bone) const { return path_[bone].size() == 1; }
+  std::size_t parent(std::size_t bone) const { return path_[bone][path_[bone].size() - 2]; }
+  // Returns the bones from an anchored one to this one, each the parent of the next.
+  const std::vector<std::uint32_t>& path(std::size_t bone) const { return path_[bone]; }
 
   // Returns the products of the trajectory of a vertex with those of all coordinates.
   std::vector<double> products(std::span<const Vec3d> trajectory) const;
@@ -54,14 +63,13 @@ class BoneSpace {
   Part part(std::vector<std::uint32_t> bones) const;
 
  private:
-  void find_paths(const BoneChains& chains);
   std::vector<std::vector<double>> columns_of(const BoneRotations& rotations,
                                               const BoneChains& chains) const;
 
   const Trajectories& t_;
   std::size_t num_bones_;
-  std::size_t num_origins_ = 0;
   std::size_t width_ = 0;
+  std::vector<std::size_t> order_;
   std::vector<std::vector<std::uint32_t>> path_;  // [bone]
   std::vector<std::size_t> origin_;               // [bone], that at the start of its path
   std::vector<double> columns_;                   // [3 * frame][width]

@@ -11,7 +11,7 @@
 #include "common/parallel/for_each.h"
 #include "encoder/codec/kinds/skinned/recover/damping.h"
 #include "encoder/codec/kinds/skinned/recover/point_equations.h"
-#include "encoder/codec/math/det_math.h"
+#include "encoder/codec/kinds/skinned/recover/robust_error.h"
 #include "encoder/codec/math/symmetric_system.h"
 
 namespace rlpc {
@@ -24,7 +24,7 @@ constexpr double kExact = 1e-4;        // fixed: extents; a tenth of the error a
 class JointPoint {
  public:
   JointPoint(const PlacedBones& bones, const BoneChains::Joint& joint)
-      : at_(joint.at),
+      : at_(bones.rest_of(joint.first, joint.at)),
         ends_{RigWeight{static_cast<std::uint32_t>(joint.first), 1.0},
               RigWeight{static_cast<std::uint32_t>(joint.second), -1.0}},
         part_(bones.space().part({std::min(ends_[0].bone, ends_[1].bone),
@@ -77,7 +77,7 @@ class ChainFit {
     for (const auto& list : chains.candidates) {
       std::vector<std::uint32_t>& kept = candidates_.emplace_back();
       for (const std::uint32_t b : list) {
-        if (!bones.space().path(b).empty()) kept.push_back(b);
+        if (bones.space().has_place(b)) kept.push_back(b);
       }
     }
     for (const BoneChains::Joint& joint : chains.joints) joints_.emplace_back(bones, joint);
@@ -151,28 +151,16 @@ class ChainFit {
     });
   }
 
-  // Returns twice the error that three fifths of the sample do not exceed.
-  double scale() const {
-    constexpr double kFinest = 5e-5;  // fixed: extents; smaller errors do not matter
+  std::vector<double> errors() const {  // of the sample
     std::vector<double> errors;
     for (const std::size_t i : sample_) errors.push_back(rms(vertices_[i]));
-    const auto at = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 3 / 5);
-    std::nth_element(errors.begin(), at, errors.end());
-    return std::max(2.0 * *at, kFinest);
+    return errors;
   }
 
-  // Returns a sum over vertices and joints that errors far above a scale affect little.
   double cost(double scale) const {
-    double sum = 0.0;
-    for (const std::size_t i : sample_) {
-      const double relative = rms(vertices_[i]) / scale;
-      sum += det_log2(1.0 + relative * relative);
-    }
-    for (const JointPoint& joint : joints_) {
-      const double relative = rms(joint.gap(bones_)) / scale;
-      sum += kJoint * det_log2(1.0 + relative * relative);
-    }
-    return sum;
+    std::vector<double> gaps;
+    for (const JointPoint& joint : joints_) gaps.push_back(rms(joint.gap(bones_)));
+    return robust_cost(errors(), scale) + kJoint * robust_cost(gaps, scale);
   }
 
   // Takes steps as long as they lower the cost.
@@ -183,7 +171,7 @@ class ChainFit {
     constexpr double kFirstDamping = 1e-2;  // fixed: the start may be far off
     // tuned: Part of the cost that the steps with one scale may leave, or no more are taken.
     constexpr double kStalled = 0.995;
-    double now = scale();
+    double now = robust_scale(errors());
     double start = cost(now);
     double before = start;
     Damping damping(kFirstDamping);
@@ -209,7 +197,7 @@ class ChainFit {
       }
       if (i % kScaled != 0) continue;
       if (before > kStalled * start) break;
-      now = scale();
+      now = robust_scale(errors());
       start = before = cost(now);
     }
   }
@@ -219,8 +207,7 @@ class ChainFit {
     std::vector<double> system(n * n, 0.0);
     std::vector<double> right(n, 0.0);
     const auto add = [&](const StepEquations& e, double error, double weight) {
-      const double relative = error / scale;
-      weight /= 1.0 + relative * relative;
+      weight *= robust_weight(error, scale);
       const std::size_t count = e.unknowns.size();
       for (std::size_t p = 0; p < count; ++p) {
         right[e.unknowns[p]] += weight * e.b[p];

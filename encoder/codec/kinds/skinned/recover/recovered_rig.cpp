@@ -11,6 +11,7 @@
 #include "encoder/codec/kinds/skinned/fit/skin_sums.h"
 #include "encoder/codec/kinds/skinned/fit/vertex_rings.h"
 #include "encoder/codec/kinds/skinned/recover/bone_chains.h"
+#include "encoder/codec/kinds/skinned/recover/bone_placement.h"
 #include "encoder/codec/kinds/skinned/recover/bone_rotations.h"
 #include "encoder/codec/kinds/skinned/recover/bone_space.h"
 #include "encoder/codec/kinds/skinned/recover/chain_fit.h"
@@ -44,7 +45,7 @@ Eigen::Matrix3d rotation_in(const SpanFrames& frames, std::uint32_t frame,
 BoneMotions motions_of(const SpanFrames& frames, double extent, const BoneRotations& rotations,
                        const BoneChains& chains, const PlacedBones& bones) {
   BoneMotions motions(chains.bones.size());
-  for (const std::size_t b : chains.order) {
+  for (const std::size_t b : bones.space().order()) {
     const BoneChains::Bone& bone = chains.bones[b];
     const Vec3d pivot = bones.pivot(b) * extent;
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
@@ -52,7 +53,7 @@ BoneMotions motions_of(const SpanFrames& frames, double extent, const BoneRotati
       rotation = rotation_in(frames, f, rotations.bones[b], rotation);
       Vec3d origin = Vec3d::Zero();
       if (bone.anchors.empty()) {
-        origin = moved(motions[bone.parent][f], pivot);
+        origin = moved(motions[bones.space().parent(b)][f], pivot);
       } else {
         for (const std::uint32_t v : bone.anchors) origin += position(frames, f, v);
         origin /= static_cast<double>(bone.anchors.size());
@@ -82,14 +83,15 @@ std::optional<RecoveredRig> recover_rig(const SpanFrames& frames,
   if (rotations.bones.size() < 2 || rotations.explained < kMinExplained) return std::nullopt;
   const BoneChains chains = connect_bones(t, rings, rotations);
   if (chains.order.size() < 2) return std::nullopt;
-  const BoneSpace space(t, rotations, chains);
+  BoneSpace space(t, rotations, chains);
   PlacedBones bones(space, chains);
+  place_bones(t, chains, space, bones);
   Skin skin = fit_chains(t, chains, bones);
 
   BoneMotions placed = motions_of(frames, t.extent(), rotations, chains, bones);
   BoneMotions motions;
   std::vector<std::uint32_t> place(placed.size());
-  for (const std::size_t b : chains.order) {
+  for (const std::size_t b : bones.space().order()) {
     place[b] = static_cast<std::uint32_t>(motions.size());
     motions.push_back(std::move(placed[b]));
   }

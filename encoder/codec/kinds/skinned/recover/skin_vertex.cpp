@@ -1,6 +1,7 @@
 #include "encoder/codec/kinds/skinned/recover/skin_vertex.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "common/codec/kinds/skinned/skinned_gof.h"
@@ -21,21 +22,46 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 
 std::vector<double> times(const std::vector<double>& gram, const std::vector<double>& x) {
   const std::size_t n = x.size();
-  return matrix_product(x, n, gram, n);  // the matrix is symmetric
+  std::vector<double> result(n, 0.0);
+  for (std::size_t s = 0; s < n; ++s) {
+    if (x[s] == 0.0) continue;  // most are, of a vertex that follows few of many bones
+    subtract_multiple(-x[s], std::span(gram).subspan(s * n, n), result);
+  }
+  return result;
 }
 
 NormalEquations normal_equations(const std::vector<double>& gram, const std::vector<double>& d,
                                  const std::vector<double>& products, std::size_t count) {
   const std::size_t size = products.size();
-  const std::vector<double> gd = matrix_product(gram, size, d, count);
-  NormalEquations e{std::vector<double>(count * count, 0.0), std::vector<double>(count, 0.0)};
-  for (std::size_t s = 0; s < size; ++s) {
-    const auto row = std::span(gd).subspan(s * count, count);
-    for (std::size_t p = 0; p < count; ++p) {
+  // Columns have few rows that are not 0: a bone moves its own coordinates and its parent's.
+  struct Entry {
+    std::size_t row;
+    double value;
+  };
+  std::vector<Entry> entries;         // column by column
+  std::vector<std::size_t> first{0};  // entries of the columns before
+  for (std::size_t p = 0; p < count; ++p) {
+    for (std::size_t s = 0; s < size; ++s) {
       const double value = d[s * count + p];
-      if (value == 0.0) continue;
-      e.b[p] += value * products[s];
-      subtract_multiple(-value, row, std::span(e.a).subspan(p * count, count));
+      if (value != 0.0) entries.push_back({s, value});
+    }
+    first.push_back(entries.size());
+  }
+  const auto column = [&](std::size_t p) {
+    return std::span(entries).subspan(first[p], first[p + 1] - first[p]);
+  };
+  NormalEquations e{std::vector<double>(count * count, 0.0), std::vector<double>(count, 0.0)};
+  std::vector<double> gd(size);
+  for (std::size_t p = 0; p < count; ++p) {
+    std::fill(gd.begin(), gd.end(), 0.0);
+    for (const auto& [row, value] : column(p)) {
+      e.b[p] += value * products[row];
+      subtract_multiple(-value, std::span(gram).subspan(row * size, size), gd);
+    }
+    for (std::size_t q = 0; q <= p; ++q) {
+      double sum = 0.0;
+      for (const auto& [row, value] : column(q)) sum += value * gd[row];
+      e.a[p * count + q] = e.a[q * count + p] = sum;
     }
   }
   return e;
@@ -80,6 +106,22 @@ SkinVertex::SkinVertex(const PlacedBones& bones, std::span<const Vec3d> trajecto
   } else {
     take(bones.space(), std::move(candidates));
   }
+  double min = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t b : part_.bones) {
+    const Vec3d rest = bones.rest_of(b, trajectory[0]);
+    const double error = error_of_one(bones, b, rest);
+    if (!(error < min)) continue;
+    min = error;
+    fit_.rest = rest;
+  }
+}
+
+// Returns the squared error if the vertex follows one bone, less the square of the trajectory.
+double SkinVertex::error_of_one(const PlacedBones& bones, std::uint32_t bone,
+                                const Vec3d& rest) const {
+  std::vector<double> x(part_.size(), 0.0);
+  bones.add_moved(part_, bone, rest, 1.0, x);
+  return dot(x, times(part_.gram, x)) - 2.0 * dot(x, wanted_);
 }
 
 void SkinVertex::take(const BoneSpace& space, std::vector<std::uint32_t> bones) {
@@ -93,11 +135,9 @@ void SkinVertex::widen(const PlacedBones& bones) {
   const BoneSpace& space = bones.space();
   std::vector<std::pair<double, std::uint32_t>> order;
   for (std::uint32_t b = 0; b < space.num_bones(); ++b) {
-    if (space.path(b).empty()) continue;
+    if (!space.has_place(b)) continue;
     take(space, {b});
-    std::vector<double> x(part_.size(), 0.0);
-    bones.add_moved(part_, b, fit_.rest, 1.0, x);
-    order.emplace_back(dot(x, times(part_.gram, x)) - 2.0 * dot(x, wanted_), b);
+    order.emplace_back(error_of_one(bones, b, fit_.rest), b);
   }
   std::sort(order.begin(), order.end());
   std::vector<std::uint32_t> chosen;
@@ -122,20 +162,17 @@ void SkinVertex::fit(const PlacedBones& bones, int rounds) {
 void SkinVertex::fit_weights(const PlacedBones& bones) {
   const std::size_t count = part_.bones.size();
   const std::size_t size = part_.size();
-  std::vector<double> x;  // [candidate][size]
+  std::vector<std::vector<double>> x(count, std::vector<double>(size, 0.0));  // [candidate]
   std::vector<double> along(count);
   for (std::size_t i = 0; i < count; ++i) {
-    std::vector<double> one(size, 0.0);
-    bones.add_moved(part_, part_.bones[i], fit_.rest, 1.0, one);
-    along[i] = dot(one, wanted_);
-    x.insert(x.end(), one.begin(), one.end());
+    bones.add_moved(part_, part_.bones[i], fit_.rest, 1.0, x[i]);
+    along[i] = dot(x[i], wanted_);
   }
-  const std::vector<double> gx = matrix_product(x, size, part_.gram, size);
   std::vector<double> gram(count * count);  // of the errors of a vertex that follows one bone
   for (std::size_t i = 0; i < count; ++i) {
+    const std::vector<double> gx = times(part_.gram, x[i]);
     for (std::size_t j = 0; j <= i; ++j) {
-      double both = 0.0;
-      for (std::size_t s = 0; s < size; ++s) both += x[j * size + s] * gx[i * size + s];
+      const double both = dot(x[j], gx);
       gram[i * count + j] = gram[j * count + i] = both - along[i] - along[j] + square_;
     }
     double& own = gram[i * count + i];

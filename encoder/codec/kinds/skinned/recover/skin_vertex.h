@@ -15,8 +15,9 @@ namespace rlpc {
 
 class SkinVertex {
  public:
-  // Starts at the position in the first frame. candidates: bones that the vertex may follow,
-  // ascending, with a place; none: those that move it most alike.
+  // Starts at the rest position from which the bone that moves the vertex most alike moves it
+  // to its place in the first frame. candidates: bones that the vertex may follow, ascending,
+  // with a place; none: those that move it most alike.
   SkinVertex(const PlacedBones& bones, std::span<const Vec3d> trajectory,
              std::vector<std::uint32_t> candidates);
 
@@ -44,6 +45,7 @@ class SkinVertex {
   void fit_weights(const PlacedBones& bones);
   void fit_rest(const PlacedBones& bones);
   void polish(const PlacedBones& bones);
+  double error_of_one(const PlacedBones& bones, std::uint32_t bone, const Vec3d& rest) const;
   std::vector<double> moved(const PlacedBones& bones) const;
   double error(const PlacedBones& bones) const;
 
