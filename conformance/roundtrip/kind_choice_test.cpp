@@ -23,7 +23,7 @@ namespace {
 // components move in jumps.
 constexpr double kMaxLarger = 1.25;
 constexpr double kMaxMeanLarger = 1.02;
-constexpr std::uint32_t kNumPositions = 300000;  // enough for samples to save time
+constexpr std::uint32_t kNumPositions = 150000;  // enough for samples to save time
 
 // Sheets that move rigidly, each with waves of its own or of all: of few or many frequencies,
 // slow or fast, or of noise. One kind of GOF wins for some, another for others.
