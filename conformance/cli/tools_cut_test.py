@@ -13,8 +13,7 @@ from tools_testing import ROOT, ToolsTest, limited, main, run, searched
 for folder in ("judge", "specdec", "rlpcgen"):
     sys.path.insert(0, str(ROOT / "conformance" / folder))
 import random_high
-import spec_program
-import specdec
+from specdec_testing import PROGRAM
 
 STREAM_HEADER_BYTES, UNIT_BYTES = 10, 9  # header and CRC
 GOF, GOF_INDEX, GOF_HASH, ATTRIBUTES, END = 4, 129, 130, 136, 5
@@ -68,8 +67,7 @@ class CutTest(ToolsTest):
 
     def random_stream(self, seed, profile="main"):
         if profile not in CutTest.builders:
-            CutTest.builders[profile] = random_high.builder_of(profile)(
-                spec_program.Program(specdec.SPEC))
+            CutTest.builders[profile] = random_high.builder_of(profile)(PROGRAM)
         path = self.path("in.rlpc")
         path.write_bytes(CutTest.builders[profile].build(seed)[0])
         return path

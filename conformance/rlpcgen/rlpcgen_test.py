@@ -22,14 +22,13 @@ import range_writer
 import recipe as recipes
 import recipe_source
 import specdec
-import spec_program
 import stress
 import suite
 import suite_streams
 
 HERE = pathlib.Path(__file__).resolve().parent
 SPEC = HERE.parents[1] / "spec"
-PROGRAM = spec_program.Program(SPEC)
+PROGRAM = specdec.program_of(SPEC)
 BUILDER = recipe_source.StreamBuilder(PROGRAM)
 BIN = None
 

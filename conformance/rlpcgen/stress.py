@@ -20,7 +20,6 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "judge"))
 import expectation
 import random_high
 import recipe as recipes
-import spec_program
 import suite
 import suite_streams
 
@@ -38,10 +37,10 @@ class _Worker:
 
     def __init__(self, folder, spec, bin_folder=None):
         self._folder = pathlib.Path(folder)
-        self._program = spec_program.Program(spec)
+        self._version = suite_streams.Version(folder, spec)
+        self._program = self._version.program
         self._profile = PROFILES[self._folder.name]
         self._random = random_high.builder_of(self._profile)(self._program)
-        self._version = suite_streams.Version(folder, spec)
         self._bin = bin_folder and pathlib.Path(bin_folder).resolve()
 
     def make(self, item):

@@ -13,8 +13,7 @@ sys.path.insert(0, str(_CONFORMANCE / "judge"))
 import expectation
 import recipe as recipes
 import recipe_source
-import spec_program  # found through recipe_source
-import specdec
+import specdec  # found through recipe_source
 import suite
 
 LICENCE = "CC0-1.0"
@@ -123,7 +122,7 @@ class Version:
 
     def __init__(self, folder, spec):
         self.folder = pathlib.Path(folder).resolve()
-        self.program = spec_program.Program(spec)
+        self.program = specdec.program_of(spec)
         self._builder = recipe_source.StreamBuilder(self.program)
 
     def make(self, path):

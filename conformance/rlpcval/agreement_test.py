@@ -16,9 +16,7 @@ from tools_testing import ROOT, ToolsTest, main, run
 for folder in ("judge", "specdec", "rlpcgen"):
     sys.path.insert(0, str(ROOT / "conformance" / folder))
 import random_high
-import spec_program
-import specdec
-from specdec_testing import stream_of, units_of
+from specdec_testing import PROGRAM, stream_of, units_of
 
 SLICE = 6
 RIG = 7
@@ -70,7 +68,7 @@ class Agreement(ToolsTest):
         return verdict["rule"], verdict["bit"]
 
     def check(self, profile, num_rules):
-        builder = random_high.builder_of(profile)(spec_program.Program(specdec.SPEC))
+        builder = random_high.builder_of(profile)(PROGRAM)
         paths = []
         for seed in range(self.SEEDS):
             good, numbers = builder.build(seed)[0], random.Random(seed)

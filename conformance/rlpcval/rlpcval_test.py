@@ -16,8 +16,8 @@ from tools_testing import ROOT, ToolsTest, main, run, write_obj, write_pc2
 for folder in ("judge", "specdec"):
     sys.path.insert(0, str(ROOT / "conformance" / folder))
 import schema
-import spec_program
 import specdec
+from specdec_testing import PROGRAM
 
 
 class Validation(ToolsTest):
@@ -176,14 +176,13 @@ class Specification(ToolsTest):
             yield repaired(data) if number % 4 else bytes(data)
 
     def test_first_rule(self):
-        program = spec_program.Program(specdec.SPEC)
         verdicts, paths = [], []
         streams = []
         for profile in ("baseline", "main"):
             self.encode_small(profile)
             streams += self.damaged()
         for number, data in enumerate(streams):
-            decoder = specdec.Decoder(program, data, lambda output: None)
+            decoder = specdec.Decoder(PROGRAM, data, lambda output: None)
             try:
                 decoder.call("stream")
                 verdicts.append(None)

@@ -10,6 +10,7 @@
   --check-widths    fail if an intermediate value exceeds 64 bits (slow)
   --spec FOLDER     the specification (default: spec/ of the project)
   --cache FOLDER    before the verb: keep the translated pseudo-code there
+                    (default: $RLPC_SPECDEC_CACHE, if set)
 
 OUT.rlpd holds exactly the frames before an error; OUT.rlpa is not written after
 one, or without attributes. Exit code: 0 decoded; 1 not a
@@ -22,6 +23,7 @@ rlpc-verdict {"rule": ..., "bit": ..., "frame": ...}.
 import argparse
 import functools
 import json
+import os
 import pathlib
 import re
 import struct
@@ -136,9 +138,8 @@ class Output:
 
 
 def program_of(folder, cache=None):
-    if cache is None:
-        return spec_program.Program(folder)
-    return program_cache.CachedProgram(folder, cache)
+    cache = cache or os.environ.get("RLPC_SPECDEC_CACHE")
+    return program_cache.CachedProgram(folder, cache) if cache else spec_program.Program(folder)
 
 
 @functools.cache

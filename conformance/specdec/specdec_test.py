@@ -7,6 +7,7 @@
 import contextlib
 import io
 import json
+import os
 import pathlib
 import random
 import re
@@ -304,7 +305,9 @@ class Commands(FolderTest):
                 self.assertEqual(json.loads(line[13:])["rule"], rule)
                 self.assertFalse((self.folder / "a.rlpd").exists())
 
+    @unittest.mock.patch.dict(os.environ)
     def test_a_cache_saves_the_translation_and_nothing_else(self):
+        os.environ.pop("RLPC_SPECDEC_CACHE", None)
         stream = ROOT / "streams" / "v1.0" / "accept" / "GOF" / "GOF-0002a.rlpc"
         plain, cached = self.folder / "plain.rlpd", self.folder / "cached.rlpd"
         self.assertEqual(self.specdec("decode", stream, plain)[0], 0)
@@ -321,6 +324,10 @@ class Commands(FolderTest):
             self.assertIn("profile_idc = ", output)
             self.assertEqual(self.specdec("--cache", cache, "--rlpc-conformance"),
                              self.specdec("--rlpc-conformance"))
+            calls = program.call_count
+            os.environ["RLPC_SPECDEC_CACHE"] = str(cache)
+            self.assertEqual(self.specdec("decode", stream, cached)[0], 0)
+            self.assertEqual(program.call_count, calls)
 
     def test_a_cache_knows_other_texts(self):
         spec = self.folder / "spec"

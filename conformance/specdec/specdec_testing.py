@@ -13,11 +13,10 @@ import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import spec_program
 import specdec
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = spec_program.Program(ROOT / "spec")
+PROGRAM = specdec.program_of(ROOT / "spec")
 STREAM_HEADER_BYTES, UNIT_HEADER_BYTES, CRC_BYTES = 10, 5, 4
 
 

@@ -15,6 +15,13 @@
 # (PROCESSORS), and uses no more.
 include(GoogleTest)
 
+# The interpreter that scripts run in. The one that was found may be a script of pyenv which looks
+# for it, and takes longer than most decodings of specdec.
+if(BUILD_TESTING)
+  execute_process(COMMAND ${Python3_EXECUTABLE} -c "import sys; print(sys.executable, end='')"
+                  OUTPUT_VARIABLE RLPC_PYTHON COMMAND_ERROR_IS_FATAL ANY)
+endif()
+
 # What most tests include, compiled once. With g++ alone: the presets of clang prove that sources
 # name what they use, and clang-tidy reads their commands before anything is built.
 if(BUILD_TESTING AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -74,10 +81,11 @@ function(rlpc_tests)
 endfunction()
 
 # rlpc_python_test(NAME LABEL SCRIPT ARGUMENT... [SLOW] [PURE] [PROCESSORS n]): one entry.
-# PURE: it runs nothing that was built. SLOW: see above.
+# PURE: it runs nothing that was built. SLOW: see above. specdec keeps its translation of the
+# specification for other tests.
 function(rlpc_python_test name label script)
   cmake_parse_arguments(PARSE_ARGV 3 ARG "SLOW;PURE" "PROCESSORS" "")
-  add_test(NAME ${name} COMMAND Python3::Interpreter -B ${CMAKE_CURRENT_SOURCE_DIR}/${script}
+  add_test(NAME ${name} COMMAND ${RLPC_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/${script}
                                 ${ARG_UNPARSED_ARGUMENTS})
   set(labels ${label})
   if(ARG_PURE)
@@ -90,7 +98,8 @@ function(rlpc_python_test name label script)
   if(ARG_PROCESSORS)
     set_tests_properties(${name} PROPERTIES PROCESSORS ${ARG_PROCESSORS} COST 100)
   endif()
-  set_tests_properties(${name} PROPERTIES LABELS "${labels}")
+  set_tests_properties(${name} PROPERTIES LABELS "${labels}"
+    ENVIRONMENT RLPC_SPECDEC_CACHE=${PROJECT_BINARY_DIR}/specdec)
 endfunction()
 
 # rlpc_python_tests(PREFIX LABEL SCRIPT CLASS... [SLOW class...]): one entry for each class of a

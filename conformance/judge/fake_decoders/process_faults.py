@@ -2,7 +2,6 @@
 
 import os
 import signal
-import subprocess
 import sys
 import time
 
@@ -27,6 +26,7 @@ def dies_after_good_output(request):
 
 def hangs(request):
     """Starts a child that would outlive it, and notes the child's id."""
+    import subprocess  # takes longer than all else that a fake decoder does
     child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(300)"])
     (request.kept_folder() / "child").write_text(str(child.pid))
     time.sleep(300)
