@@ -7,15 +7,17 @@
 import base64
 import json
 import re
-import shutil
 import struct
-import subprocess
+import sys
 import unittest
 import zlib
 
 from tools_testing import INPUTS, NAMES, ROOT, ToolsTest, limited, main, read_pc2, write_pc2
 
-BROWSER = shutil.which("chromium")
+sys.path.insert(0, str(ROOT / "decoder" / "web" / "player"))
+import chromium
+
+BROWSER = chromium.program()
 
 
 class PageTest(ToolsTest):
@@ -157,18 +159,31 @@ def png_pixels(path):
 
 @unittest.skipUnless(BROWSER, "chromium is not installed (Debian package chromium)")
 class PagesInBrowser(PageTest):
-    def browse(self, page, fragment, *args):
-        """Standard output of the browser; fails if the page logs anything."""
-        done = subprocess.run(
-            [BROWSER, "--headless", "--no-sandbox", "--hide-scrollbars", "--use-angle=swiftshader",
-             "--enable-unsafe-swiftshader", "--enable-logging=stderr",
-             f"--user-data-dir={self.folder / 'profile'}", "--virtual-time-budget=3000", *args,
-             f"{self.path(page).as_uri()}#{fragment}"],
-            capture_output=True, text=True, timeout=100, check=True)
-        said = [line for line in done.stderr.splitlines()
-                if "CONSOLE" in line and "GL Driver Message (OpenGL, Performance" not in line]
+    compared = {}  # name: (page, stream)
+
+    @classmethod
+    def setUpClass(cls):
+        browser = chromium.Chromium(BROWSER)
+        cls.browser = browser.__enter__()
+        cls.addClassCleanup(browser.__exit__)
+
+    def compare(self, name="elephant"):
+        """As above, once for each animation."""
+        if name not in self.compared:
+            self.compared[name] = super().compare(name), self.path("a.rlpc").read_bytes()
+        page, stream = self.compared[name]
+        self.path("a.html").write_text(page)
+        self.path("a.rlpc").write_bytes(stream)
+
+    def browse(self, page, fragment="", size=(780, 440)):
+        """The page, once it is complete; fails if it logs anything."""
+        self.browser.resize(*size)
+        self.browser.load(f"{self.path(page).as_uri()}#{fragment}")
+        dom = self.browser.page()
+        said = [text for text in self.browser.said
+                if "GL Driver Message (OpenGL, Performance" not in text]
         self.assertEqual(said, [])
-        return done.stdout
+        return dom
 
     def drawn(self, dom):
         """(frame, opaque pixels, their box in shares of the canvas: left, top, right, bottom)"""
@@ -182,7 +197,7 @@ class PagesInBrowser(PageTest):
             self.compare(name)
             more = ("frame=30&show=both&edges", "frame=30&up=z") if name == NAMES[0] else ()
             for fragment in ("frame=30", *more):
-                dom = self.browse("a.html", fragment, "--dump-dom")
+                dom = self.browse("a.html", fragment)
                 frame, pixels, box = self.drawn(dom)
                 self.assertEqual(frame, 30)
                 self.has("frame 30 / ", dom)
@@ -209,23 +224,26 @@ class PagesInBrowser(PageTest):
                   "--points-b", self.path("clip.pc2"), "-q", "--html", self.path("a.html")]
         self.ok("rlpccmp", *moving)
         for frame in range(4):
-            self.framed(self.drawn(self.browse("a.html", f"frame={frame}", "--dump-dom"))[2])
+            self.framed(self.drawn(self.browse("a.html", f"frame={frame}"))[2])
 
     def test_points_and_single_frames_are_drawn(self):
         self.path("points.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n")
         self.path("moved.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 2 0.1\nv 0 0 3\n")
         self.ok("rlpccmp", self.path("points.obj"), self.path("moved.obj"), "--html",
                 self.path("a.html"))
-        self.assertGreater(self.drawn(self.browse("a.html", "", "--dump-dom"))[1], 20)
+        self.assertGreater(self.drawn(self.browse("a.html"))[1], 20)
 
     def test_pages_are_drawn_light_and_dark(self):
         self.compare()
         self.inform(self.path("a.rlpc"))
         pictures = set()
         for page in ("a.html", "info.html"):
-            for dark in ((), ("--blink-settings=preferredColorScheme=0",)):
+            for scheme in ("dark", "light"):
+                self.browser.call("Emulation.setEmulatedMedia", features=[
+                    {"name": "prefers-color-scheme", "value": scheme}])
                 image = self.path("shot.png")
-                self.browse(page, "", f"--screenshot={image}", "--window-size=1240,900", *dark)
+                self.browse(page, size=(1240, 900))
+                self.browser.screenshot(image)
                 got, height, colours = png_pixels(image)
                 self.assertEqual((got, height), (1240, 900))
                 self.assertGreater(len(colours), 30)
@@ -233,17 +251,13 @@ class PagesInBrowser(PageTest):
         self.assertEqual(len(pictures), 4)
 
     def test_pages_fit_a_narrow_window(self):
-        """Shown in an iframe, as windows have a minimum width."""
         self.compare()
         self.inform(self.path("a.rlpc"))
         for page in ("a.html", "info.html"):
             for width in (1240, 340):
-                self.path("frame.html").write_text(
-                    f'<iframe id="f" style="width:{width}px;border:0" src="{page}" onload="'
-                    "document.title = 'width ' + f.contentDocument.documentElement.scrollWidth\">"
-                    "</iframe>")
-                dom = self.browse("frame.html", "", "--dump-dom", "--allow-file-access-from-files")
-                self.assertEqual(re.search(r"<title>width (\d+)", dom).group(1), str(width), page)
+                self.browse(page, size=(width, 800))
+                shown = self.browser.evaluate("document.documentElement.scrollWidth")
+                self.assertEqual(shown, width, page)
 
     def test_far_from_the_origin_it_looks_the_same(self):
         """Coordinates of 24 bits, exact in both places; a step is 1/1024."""
@@ -257,8 +271,8 @@ class PagesInBrowser(PageTest):
             self.path("far.obj").write_text("\n".join(lines + faces))
             self.ok("rlpccmp", self.path("far.obj"), self.path("far.obj"), "-q", "--html",
                     self.path("a.html"))
-            self.browse("a.html", "flat=1", f"--screenshot={self.path('shot.png')}",
-                        "--window-size=1000,1200")
+            self.browse("a.html", "flat=1", size=(1000, 1200))
+            self.browser.screenshot(self.path("shot.png"))
             shots.append(self.path("shot.png").read_bytes())
         self.assertTrue(shots[0] == shots[1], "the pictures differ")
 
@@ -273,7 +287,7 @@ class PagesInBrowser(PageTest):
           svg.dispatchEvent(new PointerEvent("pointermove", place));
           svg.dispatchEvent(new MouseEvent("click", place));
           </script></body>"""))
-        dom = self.browse("a.html", "frame=3", "--dump-dom")
+        dom = self.browse("a.html", "frame=3")
         tip = re.search(r'<div class="tip"[^>]*>(.*?)</figure>', dom, re.DOTALL).group(1)
         self.assertRegex(tip, r"<div>frame (2[5-9]|3\d)</div>")
         self.assertRegex(tip, r"RMS: 0\.\d+.*largest: 0\.\d+")

@@ -1,24 +1,18 @@
 #!/usr/bin/env python3
-"""Reports of the judge: their forms, the page in a browser, and the export to fluster.
+"""Reports of the judge: their forms, and the export to fluster.
 
-    report_test.py --bin BUILD/bin [unittest arguments, such as Page]
+    report_test.py --bin BUILD/bin [unittest arguments, such as Reports]
 """
 
-import html
 import json
 import os
 import pathlib
-import re
 import runpy
 import shlex
-import shutil
-import struct
 import subprocess
 import sys
 import types
-import unittest
 import xml.etree.ElementTree as ElementTree
-import zlib
 
 from judge_testing import JUDGE, JudgeTest, Tools, main
 import report
@@ -26,27 +20,36 @@ import schema
 
 FAULTY = shlex.join([sys.executable, "-SB", str(JUDGE / "fake_decoders" / "fake"),
                      "one_vertex_off_by_one"])
-BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
 
 
 class Reports(JudgeTest):
     """All forms say the same."""
 
-    def reports(self, decoder, *args):
+    faulty_reports = None
+
+    def reports(self, *args):
+        """(report, {form: text}) on FAULTY."""
         names = {form: self.folder / f"report.{form}" for form in ("markdown", "junit", "html")}
         options = [word for form, path in names.items() for word in (f"--{form}", path)]
-        code, result, errors = self.judge(decoder, *options, *args)
+        _, result, errors = self.judge(FAULTY, *options, *args)
         self.assertIsNotNone(result, errors)
-        return code, result, {form: path.read_text() for form, path in names.items()}
+        return result, {form: path.read_text() for form, path in names.items()}
+
+    def reports_on_all(self):
+        """Those on all streams, which are made once."""
+        if Reports.faulty_reports is None:
+            Reports.faulty_reports = self.reports()
+        result, texts = Reports.faulty_reports
+        return result, dict(texts)
 
     def test_json_has_the_form_of_the_schema(self):
-        _, result, _ = self.reports(FAULTY)
+        result, _ = self.reports_on_all()
         schema.check(result, schema.load("report"))
         for row in result["rows"]:
             schema.check(row["details"]["verdict"] or {}, schema.load("verdict"))
 
     def test_denominators_are_everywhere(self):
-        _, result, texts = self.reports(FAULTY)
+        result, texts = self.reports_on_all()
         self.assertEqual(result["outcomes"], {"PASS": 4, "FAIL": 4})
         texts["terminal"] = report.text(result)
         for form in ("terminal", "markdown", "html"):
@@ -57,7 +60,7 @@ class Reports(JudgeTest):
             self.assertIn("8 in all: 4 FAIL, 4 PASS", texts[form])
 
     def test_first_divergence_is_everywhere(self):
-        _, result, texts = self.reports(FAULTY, "--only", "GOF-0001a")
+        result, texts = self.reports("--only", "GOF-0001a")
         found = result["rows"][0]["details"]["divergence"]
         words = "frame 4, vertex 200: expected %d %d %d" % tuple(found["expected"])
         texts["terminal"] = report.text(result)
@@ -66,7 +69,7 @@ class Reports(JudgeTest):
         self.assertIn("--only GOF-0001a", texts["terminal"])
 
     def test_junit_counts(self):
-        _, _, texts = self.reports(FAULTY)
+        _, texts = self.reports_on_all()
         root = ElementTree.fromstring(texts["junit"])
         self.assertEqual([root.get(k) for k in ("tests", "failures", "errors", "skipped")],
                          ["8", "4", "0", "0"])
@@ -77,7 +80,7 @@ class Reports(JudgeTest):
         result = report.report_of("decoder", "<&>", {"command": "</script><b>"}, [], [], [], False)
         page = report.html(result)
         self.assertIn("&lt;/script&gt;&lt;b&gt;", page)
-        _, _, texts = self.reports(FAULTY)
+        _, texts = self.reports_on_all()
         for forbidden in ("http:", "https:", "src=", "<link", "@import", "url("):
             self.assertNotIn(forbidden, texts["html"])
 
@@ -99,73 +102,6 @@ class Reports(JudgeTest):
             got, _, errors = self.run_here(*(["--suite", self.suite] + args))
             self.assertEqual(got, code, args)
             self.assertNotIn("Traceback", errors)
-
-
-def png_pixels(path):
-    """(width, height, a sample of its bytes), to see whether anything is drawn."""
-    data = path.read_bytes()
-    width, height = struct.unpack_from(">II", data, 16)
-    at, packed = 8, b""
-    while at < len(data):
-        size, kind = struct.unpack_from(">I4s", data, at)
-        packed += data[at + 8:at + 8 + size] if kind == b"IDAT" else b""
-        at += 12 + size
-    return width, height, set(zlib.decompress(packed)[::97])
-
-
-@unittest.skipUnless(BROWSER, "chromium is not installed (Debian package chromium)")
-class Page(JudgeTest):
-    """The page in a real browser."""
-
-    def setUp(self):
-        super().setUp()
-        self.page = self.folder / "report.html"
-        self.judge(FAULTY, "--html", self.page)
-
-    def browse(self, fragment, *args):
-        done = subprocess.run(
-            [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
-             f"--user-data-dir={self.folder / 'profile'}", "--virtual-time-budget=2000", *args,
-             f"{self.page.as_uri()}#{fragment}"],
-            capture_output=True, text=True, timeout=100, check=True)
-        return done.stdout
-
-    def shown(self, fragment):
-        """(ids of the rows that are shown, ids of those opened, text of the counter)"""
-        dom = self.browse(fragment, "--dump-dom")
-        rows = re.findall(r'<tr class="row" id="([^"]+)"([^>]*)>', dom)
-        opened = re.findall(r'<tr class="row" id="([^"]+)"[^>]*>.*?<tr class="details"([^>]*)>',
-                            dom, re.DOTALL)
-        return ([i for i, rest in rows if "hidden" not in rest],
-                [i for i, rest in opened if "hidden" not in rest],
-                re.search(r'id="shown"[^>]*>([^<]*)<', dom).group(1))
-
-    def test_filters(self):
-        ids = ["GOF-0001a", "GOF-0002a", "LVL-0001a", "MET-0001a"]
-        self.assertEqual(self.shown("outcome=FAIL"), (ids, [], "4 of 8 shown"))
-        self.assertEqual(self.shown("outcome=FAIL-output&text=gof+vertex&open=GOF-0001a"),
-                         (ids[:2], ids[:1], "2 of 8 shown"))
-        self.assertEqual(self.shown("")[2], "8 of 8 shown")
-
-    def test_page_is_drawn_wide_and_narrow(self):
-        for width in (1280, 400):
-            image = self.folder / f"{width}.png"
-            self.browse("open=GOF-0001a", f"--screenshot={image}", f"--window-size={width},900")
-            got, height, colours = png_pixels(image)
-            self.assertEqual((got, height), (width, 900))
-            self.assertGreater(len(colours), 30)
-
-    def test_page_fits_a_narrow_window(self):
-        """Shown in an iframe, as windows have a minimum width."""
-        text = self.page.read_text().replace("recall();", "", 1)
-        text = html.escape(text.replace('class="details" hidden', 'class="details"'))
-        for width in (1280, 400, 340):
-            self.page.write_text(
-                f'<iframe id="f" style="width:{width}px;border:0" srcdoc="{text}" onload="'
-                "document.title = 'width ' + f.contentDocument.documentElement.scrollWidth\">"
-                "</iframe>")
-            dom = self.browse("", "--dump-dom")
-            self.assertEqual(re.search(r"<title>width (\d+)", dom).group(1), str(width))
 
 
 class Fluster(JudgeTest):

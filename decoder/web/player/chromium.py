@@ -12,6 +12,7 @@ import time
 
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
 PATIENCE = 300  # seconds: pictures are drawn by the processor, which may be busy
+SAID = ("Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded")  # events
 
 
 def program():
@@ -20,13 +21,17 @@ def program():
 
 
 class Chromium:
-    """with Chromium(path) as browser: ...; messages go through two pipes, ended by a NUL."""
+    """with Chromium(path) as browser: ...; messages go through two pipes, ended by a NUL.
+
+    said: what the page has written to the console, as JSON.
+    """
 
     def __init__(self, path, size=(1280, 800)):
         self._path = path
         self._size = size
         self._last_id = 0
         self._received = b""
+        self.said = []
 
     def __enter__(self):
         self._profile = tempfile.TemporaryDirectory()
@@ -54,6 +59,8 @@ class Chromium:
         self._session = self._call("Target.attachToTarget", targetId=page["targetId"],
                                    flatten=True)["sessionId"]
         self.resize(width, height)
+        self.call("Runtime.enable")
+        self.call("Log.enable")
         return self
 
     def __exit__(self, *_):
@@ -68,6 +75,17 @@ class Chromium:
 
     def open(self, address):
         self.call("Page.navigate", url=address)
+
+    def load(self, address):
+        """Opens it in an empty page, and waits until that is complete."""
+        self.open("about:blank")
+        self.said.clear()
+        self.open(address)
+        self.wait_for("document.readyState === 'complete'")
+
+    def page(self):
+        """Its HTML as it is now."""
+        return self.evaluate("document.documentElement.outerHTML")
 
     def resize(self, width, height):
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height,
@@ -115,7 +133,9 @@ class Chromium:
         while True:
             reply = self._next_message()
             if reply.get("id") != self._last_id:
-                continue  # an event
+                if reply["method"] in SAID:
+                    self.said.append(json.dumps(reply["params"]))
+                continue
             if "error" in reply:
                 raise RuntimeError(f"{method}: {reply['error']}")
             return reply["result"]
