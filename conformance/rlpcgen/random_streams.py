@@ -12,6 +12,7 @@ import recipe_source
 import stream_writer
 import writing_code
 from recipe import Numbers
+from spec_program import without_collections  # found through writing_code
 
 _MAX_RESIDUAL = (1 << 28) - 1
 MAX_RATE_MINUS1 = 4294967294  # R-HDR-03
@@ -289,6 +290,7 @@ class RandomBuilder:
         self._source_class = source or RandomSource
         self._sequence_class = sequence or Sequence
 
+    @without_collections()
     def build(self, seed):
         """(bytes, StreamWriter)"""
         plan = self._plan_class(Numbers(seed))

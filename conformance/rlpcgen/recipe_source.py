@@ -6,6 +6,7 @@ import mesh_gates
 import recipe as recipes
 import stream_writer
 import writing_code
+from spec_program import without_collections  # found through writing_code
 
 SIGNATURE = bytes([137, 82, 76, 80, 67, 13, 10, 26])
 
@@ -277,6 +278,7 @@ class StreamBuilder:
         self._elements = set(writing_code.element_names(program))
         self._code = writing_code.writing_code(program)
 
+    @without_collections()
     def build(self, recipe):
         """(bytes, StreamWriter)"""
         source = RecipeSource(recipe, self._elements)

@@ -1,6 +1,8 @@
 """The pseudo-code of spec/*.md, checked and translated to Python functions (clause 4 of spec/)."""
 
 import ast
+import contextlib
+import gc
 import pathlib
 import re
 
@@ -335,6 +337,19 @@ class Program:
         trace_element; with widths, also checked_width.
         """
         return run(self.code(trace, widths), given)
+
+
+@contextlib.contextmanager
+def without_collections():
+    """Looking for cycles in memory takes longer than decoding large streams, whose lists have
+    none."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
 
 
 def run(code, given):

@@ -68,7 +68,8 @@ class Decoder:
             trace=trace is not None, widths=widths)
 
     def call(self, name):
-        return self.variables[name]()
+        with spec_program.without_collections():
+            return self.variables[name]()
 
     def place(self):
         """(bit position, number of frames output) that decoding has reached."""
