@@ -142,6 +142,7 @@ def write_suite(folder, spec, out, seeds, jobs):
     for kind in sorted(set(suite.FOLDER_OF.values())):
         if (folder / kind).is_dir():  # a version need not have streams of every kind
             shutil.copytree(folder / kind, _out / kind, dirs_exist_ok=True)
+    suite_streams.builder_of(spec)
     with multiprocessing.get_context("fork").Pool(jobs, _start, (folder, spec)) as pool:
         yield from pool.imap(_write, items(folder, seeds), chunksize=4)
     index = suite.index_of(_out, f"rlpc-{folder.name}-stress", folder.name[1:])
@@ -150,6 +151,7 @@ def write_suite(folder, spec, out, seeds, jobs):
 
 def examine(folder, spec, bin_folder, seeds, jobs):
     """Yields (name, bytes, digest, complaint) of each item."""
+    suite_streams.builder_of(spec)
     with multiprocessing.Pool(jobs, _start, (folder, spec, bin_folder)) as pool:
         yield from pool.imap(_examine, items(folder, seeds), chunksize=4)
 

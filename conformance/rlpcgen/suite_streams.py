@@ -1,5 +1,6 @@
 """The streams of a version: built from their recipes, checked against them, and frozen."""
 
+import functools
 import hashlib
 import json
 import multiprocessing
@@ -117,13 +118,19 @@ def sidecar_of(recipe, data, folder, program):
             "licence": LICENCE, **found}
 
 
+@functools.cache
+def builder_of(spec):
+    """(program, StreamBuilder); worker processes inherit what is made before them."""
+    program = specdec.program_of(spec)
+    return program, recipe_source.StreamBuilder(program)
+
+
 class Version:
     """The folder of a version, such as streams/v1.0, or of a supplement, streams/v1.1s1."""
 
     def __init__(self, folder, spec):
         self.folder = pathlib.Path(folder).resolve()
-        self.program = specdec.program_of(spec)
-        self._builder = recipe_source.StreamBuilder(self.program)
+        self.program, self._builder = builder_of(spec)
 
     def make(self, path):
         """(path of the stream, bytes, sidecar) of a recipe."""
@@ -156,6 +163,7 @@ def _make(path):
 def make_all(folder, spec, only, left_out, jobs):
     """For each recipe (path, (stream path, bytes, sidecar) or None, complaint or None)."""
     paths = recipe_paths(folder, only, left_out)
+    builder_of(spec)
     with multiprocessing.Pool(jobs, _start, (folder, spec)) as pool:
         yield from pool.imap(_make, paths)
 
