@@ -33,7 +33,7 @@ def cross(a, b):
 
 
 def minus(a, b):
-    return [a[i] - b[i] for i in range(3)]
+    return [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 
 
 def unit(n):
@@ -42,8 +42,7 @@ def unit(n):
 
 
 def degrees(a, b):
-    across = cross(a, b)
-    return math.degrees(math.atan2(math.sqrt(sum(x * x for x in across)),
+    return math.degrees(math.atan2(math.hypot(*cross(a, b)),
                                    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]))
 
 
@@ -237,7 +236,8 @@ class Scene:
         values = [list(row) for row in primitive.attributes[name]]
         for target, weight in zip(primitive.targets, weights):
             if weight and name in target:
-                for value, move in zip(values, target[name]):
-                    for c in range(3):
-                        value[c] += weight * move[c]
+                for value, (x, y, z) in zip(values, target[name]):
+                    value[0] += weight * x
+                    value[1] += weight * y
+                    value[2] += weight * z
         return values

@@ -59,6 +59,11 @@ def product_of_gaps(m, q):
     return total
 
 
+def square(m):
+    """Of a symmetric matrix with four rows."""
+    return [[a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] for b in m] for a in m]
+
+
 def turn_between(before, after):
     """The rotation nearest to what turns some vectors into others, as rows (Horn 1987); None: none
     is nearest."""
@@ -73,8 +78,8 @@ def turn_between(before, after):
     horn = [[x / bound for x in row] for row in m]
     m = [[horn[i][j] + (i == j) for j in range(4)] for i in range(4)]  # no root below 0
     for _ in range(POWERS):
-        m = [[sum(m[i][k] * m[k][j] for k in range(4)) for j in range(4)] for i in range(4)]
-        size = max(m[i][i] for i in range(4))
+        m = square(m)
+        size = max(m[0][0], m[1][1], m[2][2], m[3][3])
         m = [[x / size for x in row] for row in m]
     best = max(range(4), key=lambda i: m[i][i])
     length = math.sqrt(sum(x * x for x in m[best]))
@@ -98,13 +103,17 @@ class Oracle:
             self.around.setdefault(v, []).append(c)
             self.vertex_of[number] = v
         self.turns = {}
+        self.triangles = {}
 
     def triangle(self, frame, c):
-        """Vectors of the two edges at a corner."""
-        first = c - c % 3
-        v, p, q = (self.decoded.corners[first + (c + k) % 3][0] for k in range(3))
-        xyz = self.decoded.positions[frame]
-        return minus(xyz[p], xyz[v]), minus(xyz[q], xyz[v])
+        """Vectors of the two edges at a corner, and their product."""
+        if (frame, c) not in self.triangles:
+            first = c - c % 3
+            v, p, q = (self.decoded.corners[first + (c + k) % 3][0] for k in range(3))
+            xyz = self.decoded.positions[frame]
+            a, b = minus(xyz[p], xyz[v]), minus(xyz[q], xyz[v])
+            self.triangles[frame, c] = a, b, cross(a, b)
+        return self.triangles[frame, c]
 
     def is_same(self, a, b):
         """Whether two numbers have one normal."""
@@ -120,8 +129,7 @@ class Oracle:
         for f in range(len(self.frames)):
             total = [0.0] * 3
             for c in own:
-                a, b = self.triangle(f, c)
-                n = cross(a, b)
+                a, b, n = self.triangle(f, c)
                 size = math.sqrt(dot(n, n))
                 if size > 0:
                     scale = {"area": 1.0, "equal": 1 / size,
@@ -133,9 +141,9 @@ class Oracle:
     def surroundings(self, frame, v):
         vectors, area = [], [0.0] * 3
         for c in self.around[v]:
-            a, b = self.triangle(frame, c)
+            a, b, n = self.triangle(frame, c)
             vectors += [a, b]
-            area = plus(area, cross(a, b))
+            area = plus(area, n)
         root = dot(area, area) ** 0.25
         return vectors, [x / root for x in area] if root > 0 else None
 
