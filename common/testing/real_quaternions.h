@@ -10,7 +10,7 @@
 
 namespace rlpc {
 
-inline constexpr double kOne = 1 << kQuaternionFractionBits;
+inline constexpr double kQuaternionOne = 1 << kQuaternionFractionBits;
 inline constexpr std::int64_t kOneI = std::int64_t{1} << kQuaternionFractionBits;
 using Real4 = std::array<double, 4>;
 using Real3 = std::array<double, 3>;

@@ -252,7 +252,7 @@ TEST(BitReader, UnreadBytesAreInvalid) {
   expect_error(r, Errc::kInvalid, "R-BIT-03", "unit_payload", 88);
 }
 
-class Log : public Trace {
+class ElementLog : public Trace {
  public:
   void begin(const char*, std::uint64_t) override {}
   void element(const char* name, std::int64_t value, std::uint64_t bit_pos) override {
@@ -269,7 +269,7 @@ TEST(BitReader, TracesEveryElementUpToTheFirstError) {
   w.flag(true);
   w.byte_alignment();
   const Bytes bytes = w.take();
-  Log log;
+  ElementLog log;
   BitReader r(bytes, 1000, &log);
   r.u(5, "a");
   r.ue("b", {0, 6}, "R-X");

@@ -14,7 +14,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-class Log final : public RuleListener {
+class RuleLog final : public RuleListener {
  public:
   std::vector<std::string> lines;
 
@@ -35,7 +35,7 @@ struct Reading {
       : bytes(std::move(payload)), reader(bytes, 100, nullptr, &log) {}
 
   Bytes bytes;
-  Log log;
+  RuleLog log;
   BitReader reader;
 };
 

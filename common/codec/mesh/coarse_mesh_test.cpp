@@ -7,11 +7,11 @@
 #include <map>
 #include <random>
 #include <set>
-#include <span>
 #include <utility>
 #include <vector>
 
-#include "common/testing/grid.h"
+#include "common/testing/fnv1a.h"
+#include "common/testing/triangle_mesh.h"
 
 namespace rlpc {
 namespace {
@@ -20,20 +20,13 @@ using Indices = std::vector<std::uint32_t>;
 using Triangles = std::vector<Triangle>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-struct Mesh {
-  std::uint32_t num_vertices = 0;
-  Triangles triangles;
-};
-
-CoarseMeshes coarse_meshes(const Mesh& mesh) { return {mesh.num_vertices, mesh.triangles}; }
-
-Mesh grid(std::uint32_t width, std::uint32_t height, bool closed) {
-  return {width * height, grid_triangles(width, height, closed)};
+CoarseMeshes coarse_meshes(const TriangleMesh& mesh) {
+  return {mesh.num_vertices, mesh.triangles};
 }
 
 // Makes a sphere: two poles and `rings` rings of n vertices.
-Mesh sphere(std::uint32_t rings, std::uint32_t n) {
-  Mesh mesh{2 + rings * n, {}};
+TriangleMesh sphere(std::uint32_t rings, std::uint32_t n) {
+  TriangleMesh mesh{2 + rings * n, {}};
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t j = (i + 1) % n;
     mesh.triangles.push_back({0, 2 + i, 2 + j});
@@ -47,28 +40,23 @@ Mesh sphere(std::uint32_t rings, std::uint32_t n) {
   return mesh;
 }
 
-void shuffle(Mesh& mesh, unsigned seed) {
+void renumber_by_seed(TriangleMesh& mesh, unsigned seed) {
   std::mt19937 random(seed);
-  Indices place(mesh.num_vertices);
-  for (std::uint32_t v = 0; v < mesh.num_vertices; ++v) place[v] = v;
-  for (std::uint32_t v = mesh.num_vertices; v > 1; --v) {
-    std::swap(place[v - 1], place[random() % v]);
-  }
-  for (Triangle& t : mesh.triangles) t = {place[t[0]], place[t[1]], place[t[2]]};
+  renumber_vertices(mesh, random);
 }
 
 // Makes a mesh, also with triangles that are not a surface.
-Mesh random_mesh(unsigned seed) {
+TriangleMesh mesh_with_stray_triangles(unsigned seed) {
   std::mt19937 random(seed);
   const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
-  Mesh mesh = grid(3 + below(9), 3 + below(9), below(2) == 0);
+  TriangleMesh mesh = grid_mesh(3 + below(9), 3 + below(9), below(2) == 0);
   for (std::uint32_t i = below(12); i > 0; --i) {
     const std::uint32_t n = mesh.num_vertices;
     mesh.triangles.push_back({below(n), below(n), below(n)});
     mesh.triangles.erase(mesh.triangles.begin() + below(n));
   }
   mesh.num_vertices += below(3);
-  shuffle(mesh, seed);
+  renumber_by_seed(mesh, seed);
   return mesh;
 }
 
@@ -117,7 +105,7 @@ Surface surface(const CoarseMesh& mesh) {
   return result;
 }
 
-void expect_surfaces(Mesh mesh, std::int64_t euler_characteristic, bool closed) {
+void expect_surfaces(TriangleMesh mesh, std::int64_t euler_characteristic, bool closed) {
   for (unsigned seed = 0; seed < 5; ++seed) {
     const CoarseMeshes meshes = coarse_meshes(mesh);
     ASSERT_GT(meshes.num_layers(), 5U);
@@ -132,19 +120,19 @@ void expect_surfaces(Mesh mesh, std::int64_t euler_characteristic, bool closed) 
       before = coarse.vertices.size();
     }
     EXPECT_EQ(before, mesh.num_vertices);
-    shuffle(mesh, seed);
+    renumber_by_seed(mesh, seed);
   }
 }
 
 TEST(CoarseMesh, OfAClosedSurfaceIsAClosedSurfaceOfTheSameGenus) {
   expect_surfaces(sphere(20, 25), 2, true);
-  expect_surfaces(grid(25, 20, true), 0, true);
+  expect_surfaces(grid_mesh(25, 20, true), 0, true);
 }
 
-TEST(CoarseMesh, OfADiscIsADisc) { expect_surfaces(grid(25, 20, false), 1, false); }
+TEST(CoarseMesh, OfADiscIsADisc) { expect_surfaces(grid_mesh(25, 20, false), 1, false); }
 
 TEST(CoarseMesh, OfAllLayersIsTheMeshWithoutDegenerateTriangles) {
-  Mesh mesh = grid(12, 9, false);
+  TriangleMesh mesh = grid_mesh(12, 9, false);
   const Triangles before = mesh.triangles;
   mesh.triangles.insert(mesh.triangles.begin() + 7, {3, 3, 9});
   mesh.triangles.push_back({1, 2, 1});
@@ -160,7 +148,7 @@ TEST(CoarseMesh, OfAllLayersIsTheMeshWithoutDegenerateTriangles) {
 TEST(CoarseMesh, HasTheVerticesOfItsLayers) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
-    const Mesh mesh = random_mesh(seed);
+    const TriangleMesh mesh = mesh_with_stray_triangles(seed);
     const VertexLayers layers = make_layers(mesh.num_vertices, mesh.triangles);
     const CoarseMeshes meshes = coarse_meshes(mesh);
     ASSERT_EQ(meshes.num_layers(), layers.num_layers);
@@ -184,7 +172,7 @@ TEST(CoarseMesh, HasTheVerticesOfItsLayers) {
 
 // Removing a vertex leaves the triangles of its ring, with the ring as their outline.
 TEST(CoarseMesh, FillsTheHolesOfALayer) {
-  const Mesh mesh = grid(20, 15, true);
+  const TriangleMesh mesh = grid_mesh(20, 15, true);
   const VertexLayers layers = make_layers(mesh.num_vertices, mesh.triangles);
   const CoarseMeshes meshes = coarse_meshes(mesh);
   for (std::uint32_t n = 1; n < meshes.num_layers(); ++n) {
@@ -212,7 +200,7 @@ TEST(CoarseMesh, FillsTheHolesOfALayer) {
 }
 
 TEST(CoarseMesh, FollowsTheOutputOrder) {
-  const Mesh mesh = grid(15, 11, true);
+  const TriangleMesh mesh = grid_mesh(15, 11, true);
   const std::uint32_t n = mesh.num_vertices;
   Indices order(n);
   for (std::uint32_t v = 0; v < n; ++v) order[v] = (8 * v + 5) % n;
@@ -244,41 +232,37 @@ TEST(CoarseMesh, OfAnEmptyMeshOrOfPointsHasNoTriangles) {
 
 // The bounds that LayeredTriangles states.
 TEST(CoarseMesh, TriangulationsAddABoundedNumberOfTriangles) {
-  const auto all = [](const Mesh& mesh) {
+  const auto all = [](const TriangleMesh& mesh) {
     LayeredTriangles triangles;
     make_layers(mesh.num_vertices, mesh.triangles, &triangles);
     return triangles.size();
   };
-  for (const Mesh& mesh : {sphere(30, 40), grid(50, 40, true)}) {
+  for (const TriangleMesh& mesh : {sphere(30, 40), grid_mesh(50, 40, true)}) {
     EXPECT_LE(all(mesh), 3 * mesh.triangles.size());
     EXPECT_GT(all(mesh), 2 * mesh.triangles.size());
   }
   for (unsigned seed = 1; seed <= 200; ++seed) {
-    const Mesh mesh = random_mesh(seed);
+    const TriangleMesh mesh = mesh_with_stray_triangles(seed);
     EXPECT_LE(all(mesh), 6 * mesh.triangles.size()) << seed;
   }
 }
 
-// Returns FNV-1a over all coarse meshes.
-std::uint32_t digest(const Mesh& mesh) {
-  std::uint32_t hash = 2166136261U;
-  const auto add = [&hash](std::span<const std::uint32_t> list) {
-    for (const std::uint32_t x : list) hash = (hash ^ x) * 16777619U;
-  };
+std::uint32_t digest_of_coarse_meshes(const TriangleMesh& mesh) {
+  Fnv1a digest;
   const CoarseMeshes meshes = coarse_meshes(mesh);
   for (std::uint32_t n = 1; n <= meshes.num_layers(); ++n) {
     const CoarseMesh coarse = meshes.mesh(n);
-    add(coarse.vertices);
-    for (const Triangle& t : coarse.triangles) add(t);
+    digest.add(coarse.vertices);
+    for (const Triangle& t : coarse.triangles) digest.add(t);
   }
-  return hash;
+  return digest.hash();
 }
 
 // The digests were computed by the pseudo-code of 8.9.
 TEST(CoarseMesh, AgreesWithThePseudoCode) {
-  EXPECT_EQ(digest(sphere(12, 15)), 2327020217U);
-  EXPECT_EQ(digest(grid(25, 20, false)), 2409040142U);
-  EXPECT_EQ(digest(grid(25, 20, true)), 540078209U);
+  EXPECT_EQ(digest_of_coarse_meshes(sphere(12, 15)), 2327020217U);
+  EXPECT_EQ(digest_of_coarse_meshes(grid_mesh(25, 20, false)), 2409040142U);
+  EXPECT_EQ(digest_of_coarse_meshes(grid_mesh(25, 20, true)), 540078209U);
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ using Indices = std::vector<std::uint32_t>;
 
 Indices copy_of(std::span<const std::uint32_t> list) { return {list.begin(), list.end()}; }
 
-struct Mesh {
-  explicit Mesh(std::uint32_t num_vertices, const std::vector<Triangle>& triangles)
+struct LayeredMesh {
+  explicit LayeredMesh(std::uint32_t num_vertices, const std::vector<Triangle>& triangles)
       : topology(make_topology(num_vertices, triangles)),
         layers(make_layers(num_vertices, triangles)) {}
   Topology topology;
@@ -23,7 +23,7 @@ struct Mesh {
 };
 
 // Makes a disc of `rings` rings of 8 vertices around vertex 0.
-Mesh disc(std::uint32_t rings) {
+LayeredMesh disc(std::uint32_t rings) {
   std::vector<Triangle> triangles;
   for (std::uint32_t i = 0; i < 8; ++i) {
     const std::uint32_t k = (i + 1) % 8;
@@ -34,11 +34,11 @@ Mesh disc(std::uint32_t rings) {
       triangles.push_back({a + k, a + 8 + i, a + 8 + k});
     }
   }
-  return Mesh(1 + 8 * rings, triangles);
+  return LayeredMesh(1 + 8 * rings, triangles);
 }
 
 TEST(OrderedMesh, IsInDecodedOrderWithoutLayers) {
-  const Mesh m = disc(3);
+  const LayeredMesh m = disc(3);
   for (const Prediction p :
        {Prediction::kNone, Prediction::kParallelogram, Prediction::kParallelograms}) {
     const OrderedMesh mesh(p, m.topology, m.layers);
@@ -58,7 +58,7 @@ TEST(OrderedMesh, IsInDecodedOrderWithoutLayers) {
 }
 
 TEST(OrderedMesh, RingIsThePreviousVertexWithoutEarlierNeighbours) {
-  const Mesh m(4, {{0, 1, 3}});
+  const LayeredMesh m(4, {{0, 1, 3}});
   const OrderedMesh mesh(Prediction::kNone, m.topology, m.layers);
   EXPECT_EQ(copy_of(mesh.ring(0)), Indices{});
   EXPECT_EQ(copy_of(mesh.ring(1)), Indices{0});
@@ -69,13 +69,13 @@ TEST(OrderedMesh, RingIsThePreviousVertexWithoutEarlierNeighbours) {
 TEST(OrderedMesh, RingIsTheLastSevenOfManyEarlierNeighbours) {
   std::vector<Triangle> fan;
   for (std::uint32_t i = 0; i < 8; ++i) fan.push_back({i, i + 1, 9});
-  const Mesh m(10, fan);
+  const LayeredMesh m(10, fan);
   const OrderedMesh mesh(Prediction::kParallelogram, m.topology, m.layers);
   EXPECT_EQ(copy_of(mesh.ring(9)), (Indices{2, 3, 4, 5, 6, 7, 8}));
 }
 
 TEST(OrderedMesh, FollowsTheLayersIfPresent) {
-  const Mesh m = disc(6);
+  const LayeredMesh m = disc(6);
   const OrderedMesh mesh(Prediction::kLayers, m.topology, m.layers);
   ASSERT_GT(mesh.num_layers(), 2U);
   EXPECT_EQ(copy_of(mesh.order()), m.layers.layer_order);
@@ -91,7 +91,7 @@ TEST(OrderedMesh, FollowsTheLayersIfPresent) {
 
 // 8.10.1: any division into groups yields all vertices in order.
 TEST(OrderedMesh, LayerGroupsPartitionTheOrder) {
-  const Mesh m = disc(6);
+  const LayeredMesh m = disc(6);
   const OrderedMesh mesh(Prediction::kLayers, m.topology, m.layers);
   std::mt19937 random(1);
   for (int i = 0; i < 50; ++i) {
@@ -113,7 +113,7 @@ TEST(OrderedMesh, LayerGroupsPartitionTheOrder) {
 
 // A decoder knows all vertices of the rings when it reaches a vertex.
 TEST(OrderedMesh, RingsComeBeforeTheirVertex) {
-  const Mesh m = disc(6);
+  const LayeredMesh m = disc(6);
   for (const Prediction p : {Prediction::kNone, Prediction::kLayers}) {
     const OrderedMesh mesh(p, m.topology, m.layers);
     Indices place(mesh.num_vertices());

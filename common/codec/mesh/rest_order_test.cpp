@@ -16,7 +16,7 @@ namespace {
 using Triangles = std::vector<Triangle>;
 
 // Makes a sheet with holes, flipped triangles, and stray and degenerate triangles.
-Triangles random_mesh(unsigned seed, std::uint32_t num_vertices) {
+Triangles sheet_with_defects(unsigned seed, std::uint32_t num_vertices) {
   std::mt19937 engine(seed);
   const auto random = [&engine] { return static_cast<std::uint32_t>(engine()); };
   const std::uint32_t width = 1 + random() % 7;
@@ -103,7 +103,7 @@ TEST(RestOrder, IsThatOfTheText) {
   for (unsigned seed = 1; seed <= 400; ++seed) {
     SCOPED_TRACE(seed);
     const std::uint32_t n = 1 + seed % 60;
-    const Triangles triangles = random_mesh(seed, n);
+    const Triangles triangles = sheet_with_defects(seed, n);
     const RestOrder order(make_topology(n, triangles), triangles);
     const auto expected = order_of_text(triangles, n);
     ASSERT_TRUE(std::equal(expected.begin(), expected.end(), order.order().begin(),
@@ -117,7 +117,7 @@ TEST(RestOrder, HingesAreCompleteAndInTheOrientationOfTheirTriangle) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
     const std::uint32_t n = 4 + seed % 60;
-    const Triangles triangles = random_mesh(seed, n);
+    const Triangles triangles = sheet_with_defects(seed, n);
     const RestOrder order(make_topology(n, triangles), triangles);
     const auto all = hinges_of_text(triangles);
     for (std::uint32_t v = 0; v < n; ++v) {
@@ -156,7 +156,7 @@ TEST(RestOrder, RingsPrecedeTheirVertices) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
     const std::uint32_t n = 1 + seed % 60;
-    const Triangles triangles = random_mesh(seed, n);
+    const Triangles triangles = sheet_with_defects(seed, n);
     const Topology topology = make_topology(n, triangles);
     const RestOrder order(topology, triangles);
     for (std::uint32_t v = 0; v < n; ++v) {

@@ -6,22 +6,17 @@
 #include <cstdint>
 #include <random>
 #include <set>
-#include <span>
 #include <utility>
 #include <vector>
 
-#include "common/testing/grid.h"
+#include "common/testing/fnv1a.h"
+#include "common/testing/triangle_mesh.h"
 
 namespace rlpc {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
 using Triangles = std::vector<Triangle>;
-
-struct Mesh {
-  std::uint32_t num_vertices = 0;
-  Triangles triangles;
-};
 
 Indices ring(const VertexLayers& layers, std::size_t v) {
   return {layers.ring[v].begin(), layers.ring[v].end()};
@@ -46,26 +41,23 @@ void add_bipyramid(Triangles& triangles, std::uint32_t first, std::uint32_t n) {
     triangles.push_back({1, b, a});
   }
 }
-Mesh bipyramid(std::uint32_t n) {
-  Mesh mesh{n + 2, {}};
+TriangleMesh bipyramid(std::uint32_t n) {
+  TriangleMesh mesh{n + 2, {}};
   add_bipyramid(mesh.triangles, 2, n);
   return mesh;
 }
-Mesh grid(std::uint32_t width, std::uint32_t height, bool closed) {
-  return {width * height, grid_triangles(width, height, closed)};
-}
-VertexLayers make_layers(const Mesh& mesh) {
-  return rlpc::make_layers(mesh.num_vertices, mesh.triangles);
+VertexLayers layers_of(const TriangleMesh& mesh) {
+  return make_layers(mesh.num_vertices, mesh.triangles);
 }
 
 TEST(Layers, AreEmptyForAnEmptyMesh) {
-  const VertexLayers layers = make_layers({0, {}});
+  const VertexLayers layers = layers_of({0, {}});
   EXPECT_EQ(layers.num_layers, 1U);
   EXPECT_TRUE(layers.layer_order.empty());
 }
 
 TEST(Layers, AreOnlyTheBaseForAPointCloud) {
-  const VertexLayers layers = make_layers({3, {}});
+  const VertexLayers layers = layers_of({3, {}});
   EXPECT_EQ(layers.num_layers, 1U);
   EXPECT_EQ(layer_of_vertex(layers), (Indices{0, 0, 0}));
   EXPECT_EQ(layers.layer_order, (Indices{0, 1, 2}));
@@ -75,13 +67,13 @@ TEST(Layers, AreOnlyTheBaseForAPointCloud) {
 }
 
 TEST(Layers, KeepATriangleAndATetrahedronInTheBase) {
-  EXPECT_EQ(make_layers({3, {{0, 1, 2}}}).num_layers, 1U);
-  EXPECT_EQ(make_layers({4, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {0, 2, 3}}}).num_layers, 1U);
+  EXPECT_EQ(layers_of({3, {{0, 1, 2}}}).num_layers, 1U);
+  EXPECT_EQ(layers_of({4, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {0, 2, 3}}}).num_layers, 1U);
 }
 
 TEST(Layers, AnOpenFanLosesItsCentre) {
   // 0 lies in the middle of an edge of the triangle 1 2 3; 4 and 5 are ears.
-  const VertexLayers layers = make_layers({6, {{0, 1, 2}, {0, 2, 3}, {2, 1, 4}, {3, 2, 5}}});
+  const VertexLayers layers = layers_of({6, {{0, 1, 2}, {0, 2, 3}, {2, 1, 4}, {3, 2, 5}}});
   EXPECT_EQ(layers.num_layers, 2U);
   EXPECT_EQ(layers.layer_order, (Indices{1, 2, 3, 0, 4, 5}));
   EXPECT_EQ(ring(layers, 0), (Indices{1, 2, 3}));
@@ -94,11 +86,11 @@ TEST(Layers, AnOpenFanLosesItsCentre) {
 
 TEST(Layers, VerticesWithFewTrianglesAreRemovedFirst) {
   // A strip loses its ends; a double tetrahedron loses an apex, not a vertex of the belt.
-  const VertexLayers strip = make_layers({4, {{0, 1, 2}, {0, 2, 3}}});
+  const VertexLayers strip = layers_of({4, {{0, 1, 2}, {0, 2, 3}}});
   EXPECT_EQ(strip.layer_order, (Indices{0, 2, 3, 1}));
   EXPECT_EQ(ring(strip, 1), (Indices{2, 0}));
   const VertexLayers belt =
-      make_layers({5, {{3, 0, 1}, {3, 1, 2}, {3, 2, 0}, {4, 1, 0}, {4, 2, 1}, {4, 0, 2}}});
+      layers_of({5, {{3, 0, 1}, {3, 1, 2}, {3, 2, 0}, {4, 1, 0}, {4, 2, 1}, {4, 0, 2}}});
   EXPECT_EQ(belt.layer_order, (Indices{0, 1, 2, 4, 3}));
   EXPECT_EQ(ring(belt, 3), (Indices{0, 1, 2}));
 }
@@ -106,7 +98,7 @@ TEST(Layers, VerticesWithFewTrianglesAreRemovedFirst) {
 TEST(Layers, RemovingAnEarLeavesNoHole) {
   // Vertex 4 is attached to the edge 1-2 of a tetrahedron.
   const VertexLayers layers =
-      make_layers({5, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {0, 2, 3}, {2, 1, 4}}});
+      layers_of({5, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {0, 2, 3}, {2, 1, 4}}});
   EXPECT_EQ(layers.layer_order, (Indices{0, 1, 2, 3, 4}));
   EXPECT_EQ(layer_of_vertex(layers), (Indices{0, 0, 0, 0, 1}));
   EXPECT_EQ(ring(layers, 4), (Indices{2, 1}));
@@ -116,15 +108,15 @@ TEST(Layers, RemovingAnEarLeavesNoHole) {
 TEST(Layers, TheFirstOfEquallyGoodTriangulationsWithoutOldEdgesIsTaken) {
   // An octahedron: without 0 there is an edge 2-4, so that 5 leaves an edge
   // 1-3.
-  const VertexLayers layers = make_layers({6,
-                                           {{0, 1, 2},
-                                            {0, 2, 3},
-                                            {0, 3, 4},
-                                            {0, 4, 1},
-                                            {5, 2, 1},
-                                            {5, 3, 2},
-                                            {5, 4, 3},
-                                            {5, 1, 4}}});
+  const VertexLayers layers = layers_of({6,
+                                         {{0, 1, 2},
+                                          {0, 2, 3},
+                                          {0, 3, 4},
+                                          {0, 4, 1},
+                                          {5, 2, 1},
+                                          {5, 3, 2},
+                                          {5, 4, 3},
+                                          {5, 1, 4}}});
   EXPECT_EQ(layers.num_layers, 2U);
   EXPECT_EQ(layers.layer_order, (Indices{1, 2, 3, 4, 0, 5}));
   EXPECT_EQ(ring(layers, 0), (Indices{1, 2, 3, 4}));
@@ -137,29 +129,29 @@ TEST(Layers, AFanWithInconsistentWindingIsNotAFan) {
   const Triangles outside{{5, 2, 1}, {5, 3, 2}, {5, 4, 3}, {5, 1, 4}};
   Triangles triangles{{0, 1, 2}, {0, 3, 2}, {0, 3, 4}, {0, 4, 1}};
   triangles.insert(triangles.end(), outside.begin(), outside.end());
-  EXPECT_EQ(make_layers({6, triangles}).layer_of_vertex[0], 0);
+  EXPECT_EQ(layers_of({6, triangles}).layer_of_vertex[0], 0);
 }
 
 TEST(Layers, TwoFansAtAVertexAreNotAFan) {
   // Two tetrahedra, and two triangles, that meet in 0.
-  const VertexLayers closed = make_layers({7,
-                                           {{0, 1, 2},
-                                            {0, 2, 3},
-                                            {0, 3, 1},
-                                            {3, 2, 1},
-                                            {0, 4, 5},
-                                            {0, 5, 6},
-                                            {0, 6, 4},
-                                            {6, 5, 4}}});
+  const VertexLayers closed = layers_of({7,
+                                         {{0, 1, 2},
+                                          {0, 2, 3},
+                                          {0, 3, 1},
+                                          {3, 2, 1},
+                                          {0, 4, 5},
+                                          {0, 5, 6},
+                                          {0, 6, 4},
+                                          {6, 5, 4}}});
   EXPECT_EQ(closed.num_layers, 1U);
-  EXPECT_EQ(make_layers({5, {{0, 1, 2}, {0, 3, 4}}}).layer_of_vertex[0], 0);
+  EXPECT_EQ(layers_of({5, {{0, 1, 2}, {0, 3, 4}}}).layer_of_vertex[0], 0);
 }
 
 TEST(Layers, VerticesWithManyTrianglesAddNothingToOuterRings) {
-  const VertexLayers twelve = make_layers(bipyramid(12));
+  const VertexLayers twelve = layers_of(bipyramid(12));
   EXPECT_EQ(ring(twelve, 2), (Indices{0, 13, 1, 3}));
   EXPECT_EQ(outer_ring(twelve, 2), (Indices{5, 7, 9, 11}));
-  const VertexLayers thirteen = make_layers(bipyramid(13));
+  const VertexLayers thirteen = layers_of(bipyramid(13));
   EXPECT_EQ(ring(thirteen, 2), (Indices{0, 14, 1, 3}));
   EXPECT_EQ(outer_ring(thirteen, 2), Indices{13});
 }
@@ -169,14 +161,14 @@ TEST(Layers, BaseVerticesHaveTheHighestOfTheirEarlierNeighbours) {
   for (std::uint32_t i = 0; i < 8; ++i) triangles.push_back({9, i, i + 1});
   const Triangles once = triangles;
   triangles.insert(triangles.end(), once.begin(), once.end());  // no fans
-  const VertexLayers layers = make_layers({10, triangles});
+  const VertexLayers layers = layers_of({10, triangles});
   EXPECT_EQ(layers.num_layers, 1U);
   EXPECT_EQ(ring(layers, 9), (Indices{2, 3, 4, 5, 6, 7, 8}));
   EXPECT_EQ(ring(layers, 8), Indices{7});
 }
 
 TEST(Layers, DegenerateTrianglesAreIgnored) {
-  const VertexLayers layers = make_layers({4, {{0, 1, 2}, {0, 2, 3}, {0, 0, 3}, {1, 3, 1}}});
+  const VertexLayers layers = layers_of({4, {{0, 1, 2}, {0, 2, 3}, {0, 0, 3}, {1, 3, 1}}});
   EXPECT_EQ(ring(layers, 1), (Indices{2, 0}));
   EXPECT_EQ(layers.num_layers, 2U);
 }
@@ -185,14 +177,14 @@ TEST(Layers, TwoVerticesWithManyTrianglesGetNoNewEdge) {
   // Bipyramids between the same apexes: around each other vertex, only 0-1 can
   // be new at last.
   constexpr std::uint32_t kBipyramids = 3000;
-  Mesh mesh{2 + 13 * kBipyramids, {}};
+  TriangleMesh mesh{2 + 13 * kBipyramids, {}};
   for (std::uint32_t i = 0; i < kBipyramids; ++i) add_bipyramid(mesh.triangles, 2 + 13 * i, 13);
-  EXPECT_EQ(base_size(make_layers(mesh)), 2 + 3 * kBipyramids);
+  EXPECT_EQ(base_size(layers_of(mesh)), 2 + 3 * kBipyramids);
 }
 
 // Checks the properties that the clause guarantees for every mesh.
-void check(const Mesh& mesh) {
-  const VertexLayers layers = make_layers(mesh);
+void check(const TriangleMesh& mesh) {
+  const VertexLayers layers = layers_of(mesh);
   const std::uint32_t n = mesh.num_vertices;
   ASSERT_EQ(layers.layer_of_vertex.size(), n);
   ASSERT_EQ(layers.ring.size(), n);
@@ -251,10 +243,10 @@ bool are_equal(const VertexLayers& x, const VertexLayers& y) {
 
 // A surface with many defects: holes, flipped and repeated triangles, and triangles between
 // random vertices.
-Mesh random_mesh(std::mt19937& random) {
+TriangleMesh surface_with_defects(std::mt19937& random) {
   const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
-  Mesh mesh = below(4) == 0 ? bipyramid(3 + below(40))
-                            : grid(3 + below(8), 3 + below(8), below(2) == 0);
+  TriangleMesh mesh = below(4) == 0 ? bipyramid(3 + below(40))
+                                    : grid_mesh(3 + below(8), 3 + below(8), below(2) == 0);
   const std::uint32_t num_wrong = below(3) == 0 ? 0 : below(12);
   for (std::uint32_t i = 0; i < num_wrong; ++i) {
     const std::uint32_t at = below(static_cast<std::uint32_t>(mesh.triangles.size()));
@@ -277,11 +269,7 @@ Mesh random_mesh(std::mt19937& random) {
     if (mesh.triangles.empty()) break;
   }
   mesh.num_vertices += below(3);
-  Indices place(mesh.num_vertices);
-  for (std::uint32_t v = 0; v < mesh.num_vertices; ++v) place[v] = v;
-  for (std::uint32_t v = mesh.num_vertices; v > 1; --v)
-    std::swap(place[v - 1], place[below(v)]);
-  for (Triangle& t : mesh.triangles) t = {place[t[0]], place[t[1]], place[t[2]]};
+  renumber_vertices(mesh, random);
   return mesh;
 }
 
@@ -289,10 +277,10 @@ TEST(Layers, HaveTheGuaranteedProperties) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    check(random_mesh(random));
+    check(surface_with_defects(random));
   }
-  check(grid(100, 90, false));
-  check(grid(90, 100, true));
+  check(grid_mesh(100, 90, false));
+  check(grid_mesh(90, 100, true));
   check(bipyramid(1000));
 }
 
@@ -300,34 +288,30 @@ TEST(Layers, DoNotDependOnTheOrderOfTriangles) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    Mesh mesh = random_mesh(random);
-    const VertexLayers layers = make_layers(mesh);
+    TriangleMesh mesh = surface_with_defects(random);
+    const VertexLayers layers = layers_of(mesh);
     for (Triangle& t : mesh.triangles) t = {t[1], t[2], t[0]};
     std::reverse(mesh.triangles.begin(), mesh.triangles.end());
-    EXPECT_TRUE(are_equal(make_layers(mesh), layers));
+    EXPECT_TRUE(are_equal(layers_of(mesh), layers));
   }
 }
 
-// FNV-1a
-std::uint32_t digest(const VertexLayers& layers) {
-  std::uint32_t hash = 2166136261U;
-  const auto add = [&hash](std::span<const std::uint32_t> list) {
-    for (const std::uint32_t x : list) hash = (hash ^ x) * 16777619U;
-  };
-  add(layers.layer_order);
+std::uint32_t digest_of_layers(const VertexLayers& layers) {
+  Fnv1a digest;
+  digest.add(layers.layer_order);
   for (std::size_t v = 0; v < layers.ring.size(); ++v) {
-    add(layers.ring[v]);
-    add(layers.outer_ring[v]);
+    digest.add(layers.ring[v]);
+    digest.add(layers.outer_ring[v]);
   }
-  return hash;
+  return digest.hash();
 }
 
 // The digests were computed by the pseudo-code of the clause.
 TEST(Layers, AgreeWithThePseudoCode) {
-  EXPECT_EQ(digest(make_layers(grid(25, 20, false))), 3503261680U);
-  EXPECT_EQ(digest(make_layers(grid(25, 20, true))), 4047958968U);
-  EXPECT_EQ(digest(make_layers(bipyramid(300))), 2994101135U);
-  Mesh mesh = grid(30, 20, true);
+  EXPECT_EQ(digest_of_layers(layers_of(grid_mesh(25, 20, false))), 3503261680U);
+  EXPECT_EQ(digest_of_layers(layers_of(grid_mesh(25, 20, true))), 4047958968U);
+  EXPECT_EQ(digest_of_layers(layers_of(bipyramid(300))), 2994101135U);
+  TriangleMesh mesh = grid_mesh(30, 20, true);
   const std::size_t n = mesh.triangles.size();
   for (std::size_t i = 0; i < n; i += 17) {
     std::swap(mesh.triangles[i][0], mesh.triangles[i][1]);
@@ -336,24 +320,24 @@ TEST(Layers, AgreeWithThePseudoCode) {
     const Triangle t = mesh.triangles[i];
     mesh.triangles.push_back(t);
   }
-  EXPECT_EQ(digest(make_layers(mesh)), 2036378576U);
+  EXPECT_EQ(digest_of_layers(layers_of(mesh)), 2036378576U);
 }
 
 // Quadratic time, 10^12 steps, would exceed the time limit of tests.
 TEST(Layers, TakeLinearTimeOnHostileMeshes) {
   constexpr std::uint32_t kMany = 1'000'000;
-  Mesh book{kMany, {}};
-  Mesh copies{kMany, {}};
-  Mesh fan{kMany, {}};
+  TriangleMesh book{kMany, {}};
+  TriangleMesh copies{kMany, {}};
+  TriangleMesh fan{kMany, {}};
   for (std::uint32_t v = 2; v < kMany; ++v) {
     book.triangles.push_back({0, 1, v});
     copies.triangles.push_back({0, 1, 2});
     fan.triangles.push_back({0, v - 1, v});
   }
-  EXPECT_EQ(base_size(make_layers(bipyramid(kMany))), 4U);
-  EXPECT_EQ(base_size(make_layers(book)), 3U);
-  EXPECT_EQ(base_size(make_layers(copies)), kMany);
-  EXPECT_EQ(base_size(make_layers(fan)), 3U);
+  EXPECT_EQ(base_size(layers_of(bipyramid(kMany))), 4U);
+  EXPECT_EQ(base_size(layers_of(book)), 3U);
+  EXPECT_EQ(base_size(layers_of(copies)), kMany);
+  EXPECT_EQ(base_size(layers_of(fan)), 3U);
 }
 
 }  // namespace

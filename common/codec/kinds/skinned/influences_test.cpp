@@ -8,12 +8,10 @@
 #include <random>
 #include <vector>
 
-#include "common/codec/bits/residual_models.h"
+#include "common/testing/residual_bound.h"
 
 namespace rlpc {
 namespace {
-
-constexpr auto kResidualBound = static_cast<std::int32_t>(kMaxResidual);
 
 Influences of(std::initializer_list<Influence> list) {
   Influences influences;

@@ -8,10 +8,10 @@
 #include <random>
 #include <vector>
 
+#include "common/testing/residual_bound.h"
+
 namespace rlpc {
 namespace {
-
-constexpr auto kResidualBound = static_cast<std::int32_t>(kMaxResidual);
 
 // Random rings, not from a mesh.
 struct Rings {

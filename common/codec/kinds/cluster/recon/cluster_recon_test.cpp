@@ -8,14 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "common/codec/bits/residual_models.h"
+#include "common/testing/residual_bound.h"
 
 namespace rlpc {
 namespace {
 
 using Positions = std::vector<std::int32_t>;
 
-constexpr auto kResidualBound = static_cast<std::int32_t>(kMaxResidual);
 constexpr int kUnitScale = 32;  // scale_idx of scale 1
 
 SequenceHeader header_of(std::uint32_t num_vertices, int position_bits = 20) {

@@ -7,12 +7,10 @@
 #include <random>
 #include <vector>
 
-#include "common/codec/bits/residual_models.h"
+#include "common/testing/residual_bound.h"
 
 namespace rlpc {
 namespace {
-
-constexpr auto kResidualBound = static_cast<std::int32_t>(kMaxResidual);
 
 ClusterGof tracks_of(std::vector<SeedTrack> tracks, std::uint32_t num_frames) {
   ClusterGof gof;

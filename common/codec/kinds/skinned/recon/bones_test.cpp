@@ -9,15 +9,13 @@
 #include <cstdlib>
 #include <vector>
 
-#include "common/codec/bits/residual_models.h"
 #include "common/codec/components/series_predictor.h"
 #include "common/codec/kinds/cluster/cluster_gof.h"
 #include "common/testing/real_quaternions.h"
+#include "common/testing/residual_bound.h"
 
 namespace rlpc {
 namespace {
-
-constexpr auto kResidualBound = static_cast<std::int32_t>(kMaxResidual);
 
 TEST(Steps, DoubleEveryEighth) {
   EXPECT_EQ(step_of(0), 1);
@@ -92,9 +90,10 @@ class RealBone {
       if (f > 0) relative = normalised(extrapolated<Real4>(relative_, bone_.rotation_order));
       Real4 turn{1.0};
       for (std::size_t c = 0; c < 3; ++c) {
-        turn[c + 1] = std::clamp(
-            rotation[c] * static_cast<double>(step_of(bone_.rotation_step_idx)) / kOne, -1.0,
-            1.0);
+        turn[c + 1] =
+            std::clamp(rotation[c] * static_cast<double>(step_of(bone_.rotation_step_idx)) /
+                           kQuaternionOne,
+                       -1.0, 1.0);
       }
       relative = normalised(times(relative, turn));
     }
@@ -203,8 +202,8 @@ TEST(RandomBones, MoveAsInFloatingPoint) {
         EXPECT_EQ(pose.axes, axes_of(pose.rotation));
         for (std::size_t c = 0; c < 4; ++c) {
           // Under order 4, rounding errors grow with the cube of the number of frames.
-          ASSERT_NEAR(static_cast<double>(pose.rotation[c]) / kOne, exact[b].rotations[f][c],
-                      1e-4)
+          ASSERT_NEAR(static_cast<double>(pose.rotation[c]) / kQuaternionOne,
+                      exact[b].rotations[f][c], 1e-4)
               << b << " " << f;
         }
         for (std::size_t c = 0; c < 3; ++c) {
@@ -318,7 +317,7 @@ TEST(Bones, OriginsAreClippedToTheirRange) {
     bool reached = false;
     for (const BoneMotion& motion : recon_bones(bones, 40, 0)) {
       for (const BonePose& pose : motion.poses) {
-        EXPECT_NEAR(length_of(pose.rotation), kOne, 8.0);
+        EXPECT_NEAR(length_of(pose.rotation), kQuaternionOne, 8.0);
         for (const std::int64_t x : pose.origin) {
           EXPECT_GE(x, -kOneI);
           EXPECT_LT(x, kOneI);

@@ -34,14 +34,14 @@ TEST(Quaternions, AreOfUnitLengthAndKeepTheirDirection) {
       if (i % 3 == 0) q[random.below(4)] = (std::int64_t{1} << bits) - 1;
       if (i % 5 == 0) q[random.below(4)] = -(std::int64_t{1} << bits) + 1;
       const Quaternion u = normalize_quaternion(q);
-      ASSERT_LT(length_of(u), kOne + 8.0) << bits;
-      ASSERT_GT(length_of(u), kOne - 8.0) << bits;
+      ASSERT_LT(length_of(u), kQuaternionOne + 8.0) << bits;
+      ASSERT_GT(length_of(u), kQuaternionOne - 8.0) << bits;
       if (q == Quaternion{}) continue;
       const Real4 exact = unit(q);
       for (std::size_t c = 0; c < 4; ++c) {
         ASSERT_LE(std::abs(u[c]), kOneI);
         // Scaling to 29 bits causes an error of 1/2 per coordinate: 2 here, and 4 in the norm.
-        ASSERT_NEAR(static_cast<double>(u[c]), exact[c] * kOne, 8.0) << bits;
+        ASSERT_NEAR(static_cast<double>(u[c]), exact[c] * kQuaternionOne, 8.0) << bits;
       }
     }
   }
@@ -55,11 +55,12 @@ TEST(Quaternions, ProductsAreHamiltonProducts) {
     Quaternion corner{kOneI, kOneI - 1, -kOneI, kOneI - 1};  // the maximum length
     if (i % 7 == 0) std::rotate(corner.begin(), corner.begin() + i % 4, corner.end());
     const Quaternion& second = i % 7 == 0 ? corner : q;
-    if (length_of(second) < kOne / 16) continue;  // too short to have a precise direction
+    if (length_of(second) < kQuaternionOne / 16)
+      continue;  // too short to have a precise direction
     const Quaternion r = rotation_after(p, second);
     const Real4 exact = times(unit(p), unit(second));
     for (std::size_t c = 0; c < 4; ++c) {
-      ASSERT_NEAR(static_cast<double>(r[c]), exact[c] * kOne, 32.0) << i;
+      ASSERT_NEAR(static_cast<double>(r[c]), exact[c] * kQuaternionOne, 32.0) << i;
     }
   }
 }
@@ -119,7 +120,7 @@ TEST(Axes, AreTheRotatedAxes) {
       axis[k] = 1.0;
       const Real3 exact = turned(unit(q), axis);
       for (std::size_t c = 0; c < 3; ++c) {
-        ASSERT_NEAR(static_cast<double>(axes[k][c]), exact[c] * kOne, 24.0);
+        ASSERT_NEAR(static_cast<double>(axes[k][c]), exact[c] * kQuaternionOne, 24.0);
         ASSERT_LE(std::abs(axes[k][c]), kOneI + 16) << "the bound of 8.12.3";
       }
     }
