@@ -4,15 +4,10 @@
 
 #include <numeric>
 
+#include "decoder/testing/occurrences.h"
+
 namespace rlpc {
 namespace {
-
-std::size_t count(const std::string& text, const std::string& what) {
-  std::size_t found = 0;
-  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1))
-    ++found;
-  return found;
-}
 
 // A strip of squares, three wide, with two clusters; or its vertices alone.
 class GofPictures : public testing::Test {
@@ -58,13 +53,13 @@ TEST_F(GofPictures, ShowClustersAndLayersFromTwoSides) {
   EXPECT_EQ(all[0].title, "2 clusters, 1 with a seed triangle, which is outlined");
   EXPECT_EQ(all[0].notes[0], "Frame 25, in the inter GOF 20 to 29.");
   EXPECT_EQ(all[0].notes.size(), 2U);
-  EXPECT_EQ(count(all[0].body, "<g class=\"view\""), 2U);
-  EXPECT_EQ(count(all[0].body, "class=\"seed\""), 4U);
-  EXPECT_EQ(count(all[0].body, ">0: 300</text>"), 1U);
-  EXPECT_EQ(count(all[0].body, ">1: 500</text>"), 1U);
+  EXPECT_EQ(occurrences(all[0].body, "<g class=\"view\""), 2U);
+  EXPECT_EQ(occurrences(all[0].body, "class=\"seed\""), 4U);
+  EXPECT_EQ(occurrences(all[0].body, ">0: 300</text>"), 1U);
+  EXPECT_EQ(occurrences(all[0].body, ">1: 500</text>"), 1U);
   EXPECT_EQ(all[1].name, "layers");
-  EXPECT_EQ(count(all[1].body, "class=\"seed\""), 0U);
-  EXPECT_EQ(count(all[1].body, "<rect"), meshes_.num_layers());
+  EXPECT_EQ(occurrences(all[1].body, "class=\"seed\""), 0U);
+  EXPECT_EQ(occurrences(all[1].body, "<rect"), meshes_.num_layers());
 }
 
 TEST_F(GofPictures, OfGofsOfFramesShowLayersAlone) {
@@ -99,7 +94,7 @@ TEST_F(GofPictures, OfLargeMeshesShowTheLargestCoarseMeshThatIsAllowed) {
                                  " layers, with " + grouped_text(size.num_triangles)),
               0U)
         << note(picture);
-    EXPECT_LE(count(picture.body, "<path class=\"g"), 2 * 3 * size.num_triangles);
+    EXPECT_LE(occurrences(picture.body, "<path class=\"g"), 2 * 3 * size.num_triangles);
   }
   const std::uint32_t whole = meshes_.size(meshes_.num_layers()).num_triangles;
   for (const GofPicture& picture : gof_pictures(frame_, whole)) EXPECT_EQ(note(picture), "");
@@ -113,7 +108,7 @@ TEST_F(GofPictures, OfMeshesThatAreLargerStillShowVertices) {
     EXPECT_NE(note(picture).find("there is no coarse mesh"), std::string::npos);
     const std::uint32_t every = (kVertices + max_triangles - 1) / max_triangles;
     EXPECT_NE(note(picture).find("One of every " + std::to_string(every)), std::string::npos);
-    EXPECT_EQ(count(picture.body, "h0\"/>"), 2 * ((kVertices - 1) / every + 1));
+    EXPECT_EQ(occurrences(picture.body, "h0\"/>"), 2 * ((kVertices - 1) / every + 1));
   }
 }
 
@@ -121,8 +116,8 @@ TEST_F(GofPictures, HaveLegendsOfALimitedLength) {
   frame_.groups.num_groups = 800;
   std::iota(frame_.groups.group_of_vertex.begin(), frame_.groups.group_of_vertex.end(), 0U);
   const auto all = gof_pictures(frame_, 10000);
-  EXPECT_EQ(count(all[0].body, "<rect"), 60U);
-  EXPECT_EQ(count(all[0].body, ">and 740 more</text>"), 1U);
+  EXPECT_EQ(occurrences(all[0].body, "<rect"), 60U);
+  EXPECT_EQ(occurrences(all[0].body, ">and 740 more</text>"), 1U);
   EXPECT_LT(all[0].height, 600);
 }
 
@@ -135,7 +130,7 @@ TEST_F(GofPicturesOfPoints, ShowDots) {
   const auto all = gof_pictures(frame_, kVertices);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(note(all[0]), "");
-  EXPECT_EQ(count(all[0].body, "h0\"/>"), 2 * kVertices);
+  EXPECT_EQ(occurrences(all[0].body, "h0\"/>"), 2 * kVertices);
   EXPECT_EQ(all[1].title, "1 vertex layer, of which 0 is the coarsest");
   EXPECT_EQ(note(gof_pictures(frame_, kVertices - 1)[0]), "One of every 2 vertices.");
 }
@@ -143,12 +138,12 @@ TEST_F(GofPicturesOfPoints, ShowDots) {
 TEST_F(GofPictures, AreWholeFilesAndPartsOfPages) {
   const std::string file = svg_file(gof_pictures(frame_, 10000)[0]);
   EXPECT_EQ(file.find("<svg xmlns=\"http://www.w3.org/2000/svg\""), 0U);
-  EXPECT_EQ(count(file, "<svg"), count(file, "</svg>"));
-  EXPECT_EQ(count(file, "<g "), count(file, "</g>"));
+  EXPECT_EQ(occurrences(file, "<svg"), occurrences(file, "</svg>"));
+  EXPECT_EQ(occurrences(file, "<g "), occurrences(file, "</g>"));
   HtmlPage page("pictures");
   add_picture_section(page, frame_);
-  EXPECT_EQ(count(page.text(), "<svg class=\"groups\""), 2U);
-  EXPECT_EQ(count(page.text(), "://"), 0U);
+  EXPECT_EQ(occurrences(page.text(), "<svg class=\"groups\""), 2U);
+  EXPECT_EQ(occurrences(page.text(), "://"), 0U);
 }
 
 }  // namespace

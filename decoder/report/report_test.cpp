@@ -11,6 +11,7 @@
 #include "decoder/report/html_page.h"
 #include "decoder/report/mesh_view.h"
 #include "decoder/report/svg_chart.h"
+#include "decoder/testing/occurrences.h"
 
 namespace rlpc {
 namespace {
@@ -179,11 +180,7 @@ TEST(Report, PicturesOfCoarseMeshesShowAllTriangles) {
     EXPECT_NE(html.find(std::to_string(meshes.size(layers).num_vertices) + " vertices, "),
               std::string::npos);
   }
-  std::size_t paths = 0;
-  for (auto at = html.find("<path class=\"m"); at != std::string::npos; ++paths) {
-    at = html.find("<path class=\"m", at + 1);
-  }
-  EXPECT_EQ(paths, triangles);
+  EXPECT_EQ(occurrences(html, "<path class=\"m"), triangles);
   EXPECT_EQ(html.find("nan"), std::string::npos);
 }
 

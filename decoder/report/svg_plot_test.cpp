@@ -8,18 +8,13 @@
 #include <vector>
 
 #include "decoder/report/svg_axis.h"
+#include "decoder/testing/occurrences.h"
 
 namespace rlpc {
 namespace {
 
 Plot two_points(const std::string& name) {
   return {"t", {"x", true}, {"y", false}, {{name, "red", {{1, 1}, {100, 3}}}}};
-}
-
-std::size_t count(const std::string& text, const std::string& word) {
-  std::size_t found = 0;
-  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; ++at) ++found;
-  return found;
 }
 
 TEST(Axis, TicksAreRound) {
@@ -41,17 +36,17 @@ TEST(Axis, PlacesAreLinearOrLogarithmic) {
 TEST(Plot, LinesMarkersAndLegendFollowTheSeries) {
   Plot plot = two_points("a & b");
   const std::string svg = plot_svg(plot);
-  EXPECT_EQ(count(svg, "<circle"), 3U);  // one of them in the legend
-  EXPECT_EQ(count(svg, ">a &amp; b</text>"), 1U);
-  EXPECT_EQ(count(svg, "stroke=\"red\""), 2U);
-  EXPECT_EQ(count(svg, "dasharray"), 0U);
+  EXPECT_EQ(occurrences(svg, "<circle"), 3U);  // one of them in the legend
+  EXPECT_EQ(occurrences(svg, ">a &amp; b</text>"), 1U);
+  EXPECT_EQ(occurrences(svg, "stroke=\"red\""), 2U);
+  EXPECT_EQ(occurrences(svg, "dasharray"), 0U);
   plot.series[0].line = PlotLine::kDashed;
   plot.series[0].marker = PlotMarker::kSquare;
-  EXPECT_EQ(count(plot_svg(plot), "dasharray"), 2U);
-  EXPECT_EQ(count(plot_svg(plot), "<rect"), 2U + 3U);  // page and frame
+  EXPECT_EQ(occurrences(plot_svg(plot), "dasharray"), 2U);
+  EXPECT_EQ(occurrences(plot_svg(plot), "<rect"), 2U + 3U);  // page and frame
   plot.series[0].line = PlotLine::kNone;
   plot.series[0].marker = PlotMarker::kNone;
-  EXPECT_EQ(count(plot_svg(plot), "red"), 0U);
+  EXPECT_EQ(occurrences(plot_svg(plot), "red"), 0U);
 }
 
 TEST(Plot, LongNamesHaveRoom) {

@@ -8,7 +8,7 @@ namespace {
 using Indices = std::vector<std::uint32_t>;
 
 // A square of two triangles, and a vertex without any.
-const std::vector<Triangle> kSquare{{0, 1, 2}, {0, 2, 3}};
+const std::vector<Triangle> kTwoTriangles{{0, 1, 2}, {0, 2, 3}};
 constexpr std::uint32_t kVertices = 5;
 
 AttributeSet set_of(AttributeDomain domain, Indices values, Indices value_of_corner) {
@@ -20,11 +20,11 @@ AttributeSet set_of(AttributeDomain domain, Indices values, Indices value_of_cor
 }
 
 SplitVertices split(const std::vector<const AttributeSet*>& sets) {
-  SplitVertices vertices = split_vertices(kSquare, kVertices, sets);
-  EXPECT_EQ(vertices.triangles.size(), kSquare.size());
+  SplitVertices vertices = split_vertices(kTwoTriangles, kVertices, sets);
+  EXPECT_EQ(vertices.triangles.size(), kTwoTriangles.size());
   for (std::size_t c = 0; c < 6; ++c) {
     const std::uint32_t v = vertices.triangles[c / 3][c % 3];
-    EXPECT_EQ(vertices.stream_vertex[v], kSquare[c / 3][c % 3]);
+    EXPECT_EQ(vertices.stream_vertex[v], kTwoTriangles[c / 3][c % 3]);
   }
   return vertices;
 }
@@ -34,7 +34,7 @@ TEST(SplitVertices, WithoutSeamsVerticesAreThoseOfTheStream) {
   for (const auto& sets : {std::vector<const AttributeSet*>{}, {&set}}) {
     const SplitVertices vertices = split(sets);
     EXPECT_EQ(vertices.stream_vertex, (Indices{0, 1, 2, 3, 4}));
-    EXPECT_EQ(vertices.triangles, kSquare);
+    EXPECT_EQ(vertices.triangles, kTwoTriangles);
   }
   // Values that are equal count as one.
   EXPECT_EQ(split({&set}).value_of_vertex[0], (Indices{0, 0, 2, 3, 4}));

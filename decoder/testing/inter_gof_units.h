@@ -16,10 +16,6 @@
 
 namespace rlpc {
 
-// Four squares, whose nine vertices are in three layers.
-inline const std::vector<Triangle> kSquares{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {3, 1, 5},
-                                            {3, 5, 6}, {3, 6, 7}, {3, 7, 4}, {7, 6, 8}};
-
 // Position at which payloads are said to begin.
 inline constexpr std::uint64_t kPayloadBitPos = 8000;
 

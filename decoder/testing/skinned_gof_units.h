@@ -13,10 +13,15 @@
 #include "common/codec/syntax/sequence_header.h"
 #include "decoder/codec/kinds/skinned/parse/parse_skinned_gof.h"
 #include "decoder/codec/parse/parse_gof_header.h"
+#include "decoder/testing/expected_errors.h"
 
 namespace rlpc {
 
 using Bytes = std::vector<std::uint8_t>;
+
+// Four squares, whose nine vertices are in three layers.
+inline const std::vector<Triangle> kSquares{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {3, 1, 5},
+                                            {3, 5, 6}, {3, 6, 7}, {3, 7, 4}, {7, 6, 8}};
 
 // Start of slice units, as passed to the parser.
 inline constexpr std::uint64_t kUnitBitPos = 12345;
@@ -64,13 +69,5 @@ class SkinnedGofUnits {
   OrderedMeshes meshes_;
   SkinnedGofParser parser_;
 };
-
-inline void expect_invalid(const Result<bool>& parsed, const std::string& rule,
-                           const std::string& element) {
-  ASSERT_FALSE(parsed) << rule << ' ' << element;
-  EXPECT_EQ(parsed.error().code, Errc::kInvalid);
-  EXPECT_EQ(parsed.error().rule, rule);
-  EXPECT_EQ(parsed.error().element, element);
-}
 
 }  // namespace rlpc

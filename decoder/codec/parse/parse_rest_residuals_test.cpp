@@ -98,7 +98,7 @@ class RestSlice {
   RestOrder order_;
 };
 
-Result<bool> parse(const std::vector<std::uint8_t>& slice, SkinnedGof* gof = nullptr) {
+Result<bool> parse_slice(const std::vector<std::uint8_t>& slice, SkinnedGof* gof = nullptr) {
   SkinnedGofUnits units(high_header(kVertices, 1), kTorus);
   SkinnedGofRecipe recipe;
   recipe.num_adaptive_factors = 0;
@@ -121,7 +121,7 @@ TEST(ParseRestResiduals, NewCounterpartsAreKept) {
   RestSlice slice;
   const std::uint32_t listed = slice.num_listed(3);
   SkinnedGof gof;
-  ASSERT_TRUE(parse(slice.payload(3, {2, listed - 1}), &gof));
+  ASSERT_TRUE(parse_slice(slice.payload(3, {2, listed - 1}), &gof));
   int count = 0;
   for (const Counterpart& choice : gof.counterparts) {
     EXPECT_FALSE(choice.flag);
@@ -139,18 +139,18 @@ TEST(ParseRestResiduals, HingesOfACounterpartExist) {
   RestSlice slice;
   const std::uint32_t listed = slice.num_listed(3);
   ASSERT_LT(listed, std::uint32_t{1} << ceil_log2(listed));
-  expect_refused(parse(slice.payload(3, {3, 0})), "counterpart_hinge");
-  expect_refused(parse(slice.payload(3, {0, listed})), "counterpart_idx");
+  expect_refused(parse_slice(slice.payload(3, {3, 0})), "counterpart_hinge");
+  expect_refused(parse_slice(slice.payload(3, {0, listed})), "counterpart_idx");
 }
 
 TEST(ParseRestResiduals, EveryProperPrefixFails) {
   RestSlice slice;
   const std::vector<std::uint8_t> whole = slice.payload(2, {1, 0});
-  ASSERT_TRUE(parse(whole));
+  ASSERT_TRUE(parse_slice(whole));
   for (std::size_t n = 0; n < whole.size(); ++n) {
     const std::vector<std::uint8_t> prefix(whole.begin(),
                                            whole.begin() + static_cast<std::ptrdiff_t>(n));
-    EXPECT_FALSE(parse(prefix)) << n;
+    EXPECT_FALSE(parse_slice(prefix)) << n;
   }
 }
 

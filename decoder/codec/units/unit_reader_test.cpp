@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/codec/syntax/write_units.h"
+#include "decoder/testing/expected_errors.h"
 
 namespace rlpc {
 namespace {
@@ -33,16 +34,6 @@ UnitReader reader_of(Bytes bytes, Trace* trace = nullptr) {
   return UnitReader(memory_source(std::move(bytes)), trace);
 }
 
-template <class T>
-void expect_error(const Result<T>& result, Errc code, const std::string& rule,
-                  const std::string& element, std::uint64_t bit_pos) {
-  ASSERT_FALSE(result);
-  EXPECT_EQ(result.error().code, code);
-  EXPECT_EQ(result.error().rule, rule);
-  EXPECT_EQ(result.error().element, element);
-  EXPECT_EQ(result.error().bit_pos, bit_pos);
-}
-
 TEST(StreamHeader, OfThisVersionIsTaken) { EXPECT_TRUE(reader_of(kHeader).stream_header()); }
 
 TEST(StreamHeader, EveryProperPrefixIsTruncated) {
@@ -59,22 +50,24 @@ TEST(StreamHeader, EveryByteOfTheSignatureCounts) {
   for (std::size_t i = 0; i < 8; ++i) {
     Bytes wrong = kHeader;
     wrong[i] ^= 0x20;
-    expect_error(reader_of(wrong).stream_header(), Errc::kInvalid, "R-STR-01", "signature", 0);
+    expect_error_at(reader_of(wrong).stream_header(), Errc::kInvalid, "R-STR-01", "signature",
+                    0);
     // If the file is also too short, "no RLPC stream" is the better message.
     wrong.resize(i + 1);
-    expect_error(reader_of(wrong).stream_header(), Errc::kInvalid, "R-STR-01", "signature", 0);
+    expect_error_at(reader_of(wrong).stream_header(), Errc::kInvalid, "R-STR-01", "signature",
+                    0);
   }
 }
 
 TEST(StreamHeader, OtherVersionsAreUnsupported) {
   Bytes other = kHeader;
   other[9] = kVersionMinor + 1;
-  expect_error(reader_of(other).stream_header(), Errc::kUnsupported, "R-STR-03",
-               "version_minor", 72);
+  expect_error_at(reader_of(other).stream_header(), Errc::kUnsupported, "R-STR-03",
+                  "version_minor", 72);
   for (const int major : {0, 2, 255}) {
     other[8] = static_cast<std::uint8_t>(major);
-    expect_error(reader_of(other).stream_header(), Errc::kUnsupported, "R-STR-02",
-                 "version_major", 64);
+    expect_error_at(reader_of(other).stream_header(), Errc::kUnsupported, "R-STR-02",
+                    "version_major", 64);
   }
 }
 
@@ -110,9 +103,9 @@ TEST(UnitReader, EveryProperPrefixOfAUnitIsTruncated) {
     bytes.resize(kHeader.size() + n);
     const auto header = reader_of(bytes).header_at(10);
     if (n < kUnitHeaderBytes) {
-      expect_error(header, Errc::kTruncated, "R-UNT-01", "unit_type", 80);
+      expect_error_at(header, Errc::kTruncated, "R-UNT-01", "unit_type", 80);
     } else {
-      expect_error(header, Errc::kTruncated, "R-UNT-02", "unit_size", 88);
+      expect_error_at(header, Errc::kTruncated, "R-UNT-02", "unit_size", 88);
     }
   }
 }
@@ -120,7 +113,8 @@ TEST(UnitReader, EveryProperPrefixOfAUnitIsTruncated) {
 TEST(UnitReader, TheLargestSizeDoesNotWrapAround) {
   Bytes bytes = joined({kHeader, kUnit});
   std::fill(bytes.begin() + 11, bytes.begin() + 15, std::uint8_t{0xFF});
-  expect_error(reader_of(bytes).header_at(10), Errc::kTruncated, "R-UNT-02", "unit_size", 88);
+  expect_error_at(reader_of(bytes).header_at(10), Errc::kTruncated, "R-UNT-02", "unit_size",
+                  88);
 }
 
 TEST(UnitReader, LevelLimitOfCriticalUnitsIsCheckedBeforeTheirEnd) {
@@ -129,15 +123,15 @@ TEST(UnitReader, LevelLimitOfCriticalUnitsIsCheckedBeforeTheirEnd) {
   reader.set_max_unit_bytes(4);
   EXPECT_TRUE(reader.header_at(10));
   reader.set_max_unit_bytes(3);
-  expect_error(reader.header_at(10), Errc::kInvalid, "R-LVL-07", "unit_size", 88);
+  expect_error_at(reader.header_at(10), Errc::kInvalid, "R-LVL-07", "unit_size", 88);
   bytes.resize(kHeader.size() + kUnitHeaderBytes);
   UnitReader cut = reader_of(bytes);
   cut.set_max_unit_bytes(3);
-  expect_error(cut.header_at(10), Errc::kInvalid, "R-LVL-07", "unit_size", 88);
+  expect_error_at(cut.header_at(10), Errc::kInvalid, "R-LVL-07", "unit_size", 88);
   bytes[10] = static_cast<std::uint8_t>(bytes[10] | kAncillaryFlag);
   UnitReader ancillary = reader_of(bytes);
   ancillary.set_max_unit_bytes(3);
-  expect_error(ancillary.header_at(10), Errc::kTruncated, "R-UNT-02", "unit_size", 88);
+  expect_error_at(ancillary.header_at(10), Errc::kTruncated, "R-UNT-02", "unit_size", 88);
 }
 
 TEST(UnitReader, TheCrcCoversEveryBitOfTheUnit) {
@@ -149,7 +143,7 @@ TEST(UnitReader, TheCrcCoversEveryBitOfTheUnit) {
     UnitReader reader = reader_of(wrong);
     const auto unit = reader.header_at(10);
     ASSERT_TRUE(unit);
-    expect_error(reader.payload(*unit), Errc::kInvalid, "R-UNT-03", "unit_crc", 152);
+    expect_error_at(reader.payload(*unit), Errc::kInvalid, "R-UNT-03", "unit_crc", 152);
   }
   // One byte less: the CRC is read one byte early.
   Bytes smaller = stream;
@@ -157,7 +151,7 @@ TEST(UnitReader, TheCrcCoversEveryBitOfTheUnit) {
   UnitReader reader = reader_of(smaller);
   const auto unit = reader.header_at(10);
   ASSERT_TRUE(unit);
-  expect_error(reader.payload(*unit), Errc::kInvalid, "R-UNT-03", "unit_crc", 144);
+  expect_error_at(reader.payload(*unit), Errc::kInvalid, "R-UNT-03", "unit_crc", 144);
 }
 
 TEST(UnitReader, PayloadStartGivesAtMostThePayload) {
@@ -181,7 +175,7 @@ TEST(UnitReader, TakesNoMemoryForLargerPayloadsThanAllowed) {
     const auto unit = reader.header_at(10);
     ASSERT_TRUE(unit);
     if (max_bytes < 4) {
-      expect_error(reader.payload(*unit), Errc::kLimitExceeded, "", "unit_size", 88);
+      expect_error_at(reader.payload(*unit), Errc::kLimitExceeded, "", "unit_size", 88);
     } else {
       EXPECT_TRUE(reader.payload(*unit));
     }
@@ -195,7 +189,7 @@ TEST(UnitReader, CountsMemoryThatOthersUse) {
   ASSERT_TRUE(unit);
   reader.set_bytes_in_use(7);
   const auto payload = reader.payload(*unit);
-  expect_error(payload, Errc::kLimitExceeded, "", "unit_size", 88);
+  expect_error_at(payload, Errc::kLimitExceeded, "", "unit_size", 88);
   EXPECT_EQ(payload.error().needed_bytes, 11);
   reader.set_bytes_in_use(6);
   EXPECT_TRUE(reader.payload(*unit));
@@ -218,8 +212,8 @@ TEST(UnitReader, SkipsUnitsWithAValidCrc) {
       if (damaged == 0) {
         EXPECT_TRUE(reader.skip(*unit));
       } else {
-        expect_error(reader.skip(*unit), Errc::kInvalid, "R-UNT-03", "unit_crc",
-                     (unit->end() - 4) * 8);
+        expect_error_at(reader.skip(*unit), Errc::kInvalid, "R-UNT-03", "unit_crc",
+                        (unit->end() - 4) * 8);
       }
     }
   }
@@ -264,10 +258,10 @@ class FailingSource : public ByteSource {
 TEST(UnitReader, AnUnreadableSourceIsNotABadStream) {
   UnitReader reader(std::make_unique<FailingSource>(), nullptr);
   const UnitHeader unit{5, 4, 10};
-  expect_error(reader.stream_header(), Errc::kIo, "", "signature", 0);
-  expect_error(reader.header_at(10), Errc::kIo, "", "unit_type", 80);
-  expect_error(reader.payload(unit), Errc::kIo, "", "unit_payload", 120);
-  expect_error(reader.payload_start(unit, 4), Errc::kIo, "", "unit_payload", 120);
+  expect_error_at(reader.stream_header(), Errc::kIo, "", "signature", 0);
+  expect_error_at(reader.header_at(10), Errc::kIo, "", "unit_type", 80);
+  expect_error_at(reader.payload(unit), Errc::kIo, "", "unit_payload", 120);
+  expect_error_at(reader.payload_start(unit, 4), Errc::kIo, "", "unit_payload", 120);
 }
 
 }  // namespace

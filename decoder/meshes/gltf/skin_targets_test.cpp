@@ -5,7 +5,7 @@
 namespace rlpc {
 namespace {
 
-constexpr Eigen::Index kFrames = 99;  // the last 90 are at rest
+constexpr Eigen::Index kTargetFrames = 99;  // the last 90 are at rest
 
 // Makes one target of two vertices with given weights.
 PrincipalShapes one_target(const Eigen::RowVectorXf& weights) {
@@ -21,15 +21,15 @@ PrincipalShapes one_target(const Eigen::RowVectorXf& weights) {
 PrincipalShapes no_target() {
   PrincipalShapes shapes;
   shapes.targets.resize(6, 0);
-  shapes.weights.resize(0, kFrames);
+  shapes.weights.resize(0, kTargetFrames);
   return shapes;
 }
 
 TEST(TargetTrack, LeavesOutKeysThatInterpolationReproduces) {
-  Eigen::RowVectorXf weights = Eigen::RowVectorXf::Zero(kFrames);
+  Eigen::RowVectorXf weights = Eigen::RowVectorXf::Zero(kTargetFrames);
   weights.head(8) << 0, 0.1F, 0.2F, 0.3F, 0.4F, 0.31F, 0.2F, 0.1F;
   const SkinTargets targets{one_target(weights), no_target()};
-  const Clip clip{"", 0, kFrames};
+  const Clip clip{"", 0, kTargetFrames};
   const TargetTrack exact = target_track(targets, clip, 1e-4);
   EXPECT_EQ(exact.keys, (std::vector<std::uint32_t>{0, 4, 5, 6, 8, 98}));
   const std::vector<TargetTrack> tracks{target_track(targets, clip, 0.05)};
@@ -40,16 +40,17 @@ TEST(TargetTrack, LeavesOutKeysThatInterpolationReproduces) {
 }
 
 TEST(TargetTrack, HasKeysForNormals) {
-  Eigen::RowVectorXf weights = Eigen::RowVectorXf::Zero(kFrames);
+  Eigen::RowVectorXf weights = Eigen::RowVectorXf::Zero(kTargetFrames);
   weights[4] = 0.5F;
-  const SkinTargets targets{one_target(Eigen::RowVectorXf::Zero(kFrames)), one_target(weights)};
-  const TargetTrack track = target_track(targets, {"", 1, kFrames - 1}, 1e9);
+  const SkinTargets targets{one_target(Eigen::RowVectorXf::Zero(kTargetFrames)),
+                            one_target(weights)};
+  const TargetTrack track = target_track(targets, {"", 1, kTargetFrames - 1}, 1e9);
   EXPECT_EQ(track.keys, (std::vector<std::uint32_t>{0, 2, 3, 4, 97}));
   EXPECT_EQ(track.weights.row(1).maxCoeff(), 0.5F);
 }
 
 TEST(SkinTargets, MovePositionsOrNormals) {
-  const Eigen::RowVectorXf weights = Eigen::RowVectorXf::Constant(kFrames, 0.5F);
+  const Eigen::RowVectorXf weights = Eigen::RowVectorXf::Constant(kTargetFrames, 0.5F);
   const GlbMesh mesh = plain_mesh(2, {});
   GlbBuffers buffers;
   const GltfJson places = targets_of({one_target(weights), no_target()}, mesh, buffers);

@@ -30,20 +30,20 @@ Bytes table() {
   return w.take();
 }
 
-Result<std::vector<Clip>> parse(const Bytes& payload, std::uint32_t num_frames) {
+Result<std::vector<Clip>> clips_in(const Bytes& payload, std::uint32_t num_frames) {
   BitReader r(payload);
   return parse_clip_table(r, num_frames, {UINT64_MAX, 0});
 }
 
 TEST(ParseClipTable, GivesNamesAndFrames) {
-  const auto clips = parse(table(), 5);
+  const auto clips = clips_in(table(), 5);
   ASSERT_TRUE(clips);
   EXPECT_EQ(*clips, (std::vector<Clip>{{"ab", 2, 3}, {"c", 0, 1}}));
 }
 
 TEST(ParseClipTable, ClipsLieWithinTheSequence) {
   for (const std::uint32_t num_frames : {1U, 2U, 4U}) {
-    const auto clips = parse(table(), num_frames);
+    const auto clips = clips_in(table(), num_frames);
     ASSERT_FALSE(clips);
     EXPECT_EQ(clips.error().rule, std::string("R-CLP-02"));
     EXPECT_EQ(clips.error().element,
@@ -55,7 +55,7 @@ TEST(ParseClipTable, EveryProperPrefixFails) {
   const Bytes whole = table();
   for (std::size_t n = 0; n < whole.size(); ++n) {
     const auto clips =
-        parse(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n)), 5);
+        clips_in(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n)), 5);
     ASSERT_FALSE(clips);
     EXPECT_EQ(clips.error().rule, std::string("R-BIT-01"));
   }
@@ -64,7 +64,7 @@ TEST(ParseClipTable, EveryProperPrefixFails) {
 TEST(ParseClipTable, NothingFollows) {
   Bytes longer = table();
   longer.push_back(0);
-  const auto clips = parse(longer, 5);
+  const auto clips = clips_in(longer, 5);
   ASSERT_FALSE(clips);
   EXPECT_EQ(clips.error().rule, std::string("R-BIT-03"));
 }
@@ -73,7 +73,7 @@ TEST(ParseClipTable, AnEndlessTableEndsAtItsLimit) {
   BitWriter w;
   w.ue(kMaxClips);
   w.byte_alignment();
-  const auto clips = parse(w.take(), 5);
+  const auto clips = clips_in(w.take(), 5);
   ASSERT_FALSE(clips);
   EXPECT_EQ(clips.error().rule, std::string("R-CLP-01"));
 }

@@ -10,6 +10,8 @@
 #include "common/codec/bits/range_encoder.h"
 #include "common/codec/mesh/connectivity_models.h"
 #include "common/codec/mesh/cut_border.h"
+#include "common/testing/element_lines.h"
+#include "decoder/testing/expected_errors.h"
 
 namespace rlpc {
 namespace {
@@ -20,8 +22,9 @@ using Triangles = std::vector<Triangle>;
 // are listed in the first test.
 const std::vector<std::uint8_t> kTetrahedron{0x98, 0xCB};
 
-Result<Triangles> parse(const std::vector<std::uint8_t>& payload, std::uint32_t num_vertices,
-                        std::uint32_t num_triangles, Trace* trace = nullptr) {
+Result<Triangles> triangles_in(const std::vector<std::uint8_t>& payload,
+                               std::uint32_t num_vertices, std::uint32_t num_triangles,
+                               Trace* trace = nullptr) {
   BitReader r(payload, 0, trace);
   return parse_connectivity(r, num_vertices, num_triangles);
 }
@@ -50,29 +53,12 @@ class Recipe {
   CutBorder border_{4};
 };
 
-void expect_rule(const Result<Triangles>& decoded, const std::string& rule,
-                 const std::string& element) {
-  ASSERT_FALSE(decoded);
-  EXPECT_EQ(decoded.error().rule, rule);
-  EXPECT_EQ(decoded.error().element, element);
-  EXPECT_EQ(decoded.error().code, Errc::kInvalid);
-}
-
-class Names : public Trace {
- public:
-  void begin(const char*, std::uint64_t) override {}
-  void element(const char* name, std::int64_t value, std::uint64_t) override {
-    text += std::string(name) + " " + std::to_string(value) + "\n";
-  }
-  std::string text;
-};
-
 TEST(ParseConnectivity, DecodesATetrahedron) {
-  Names names;
-  const auto decoded = parse(kTetrahedron, 4, 4, &names);
+  ElementLines lines;
+  const auto decoded = triangles_in(kTetrahedron, 4, 4, &lines);
   ASSERT_TRUE(decoded);
   EXPECT_EQ(*decoded, (Triangles{{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {2, 1, 3}}));
-  EXPECT_EQ(names.text,
+  EXPECT_EQ(lines.text,
             "num_degenerate_triangles 0\nurgent_degree 3\nvertex_reuse_flag 0\n"
             "boundary_flag 0\nclose_flag 0\nnew_vertex_flag 1\n"
             "boundary_flag 0\nglue_previous_flag 1\n"
@@ -83,27 +69,29 @@ TEST(ParseConnectivity, EveryProperPrefixFails) {
   for (std::size_t n = 0; n < kTetrahedron.size(); ++n) {
     const std::vector<std::uint8_t> prefix(kTetrahedron.begin(),
                                            kTetrahedron.begin() + static_cast<long>(n));
-    EXPECT_FALSE(parse(prefix, 4, 4)) << n;
+    EXPECT_FALSE(triangles_in(prefix, 4, 4)) << n;
   }
 }
 
 TEST(ParseConnectivity, SurplusBytesFail) {
   std::vector<std::uint8_t> longer = kTetrahedron;
   longer.push_back(0);
-  expect_rule(parse(longer, 4, 4), "R-RNG-01", "connectivity_section");
+  expect_invalid(triangles_in(longer, 4, 4), "R-RNG-01", "connectivity_section");
 }
 
 TEST(ParseConnectivity, SectionMustNotStartWithOnes) {
-  expect_rule(parse({0xA0, 0xFF, 0xFF, 0xFF, 0xFF}, 4, 4), "R-RNG-02", "connectivity_section");
+  expect_invalid(triangles_in({0xA0, 0xFF, 0xFF, 0xFF, 0xFF}, 4, 4), "R-RNG-02",
+                 "connectivity_section");
 }
 
 TEST(ParseConnectivity, DegenerateTrianglesAreAtMostAllTriangles) {
-  EXPECT_TRUE(parse(Recipe(0).payload(), 3, 1));
-  expect_rule(parse(Recipe(2).payload(), 3, 1), "R-CON-01", "num_degenerate_triangles");
+  EXPECT_TRUE(triangles_in(Recipe(0).payload(), 3, 1));
+  expect_invalid(triangles_in(Recipe(2).payload(), 3, 1), "R-CON-01",
+                 "num_degenerate_triangles");
 }
 
 TEST(ParseConnectivity, ComponentNeedsThreeVerticesMore) {
-  expect_rule(parse(Recipe(0).payload(), 2, 1), "R-CON-02", "component_start");
+  expect_invalid(triangles_in(Recipe(0).payload(), 2, 1), "R-CON-02", "component_start");
 }
 
 TEST(ParseConnectivity, ReusedVertexHasOccurredBefore) {
@@ -117,12 +105,12 @@ TEST(ParseConnectivity, ReusedVertexHasOccurredBefore) {
     recipe.section.bin(recipe.models.new_vertex_flag[ctx.new_vertex_flag], true);
     recipe.section.bin(recipe.models.vertex_reused_flag, true);
     recipe.section.bypass(2, reused_vertex);
-    const auto decoded = parse(recipe.payload(), 4, 2);
+    const auto decoded = triangles_in(recipe.payload(), 4, 2);
     if (reused_vertex < 3) {
       ASSERT_TRUE(decoded);
       EXPECT_EQ(decoded->back(), (Triangle{0, 2, 2}));
     } else {
-      expect_rule(decoded, "R-CON-03", "reused_vertex");
+      expect_invalid(decoded, "R-CON-03", "reused_vertex");
     }
   }
 }
@@ -138,12 +126,12 @@ TEST(ParseConnectivity, JoinTargetIsAnotherLiveNode) {
     recipe.section.bin(recipe.models.glue_next_flag[ctx.glue_next_flag], false);
     recipe.section.bin(recipe.models.far_join_flag, true);
     recipe.section.bypass(2, node);
-    const auto decoded = parse(recipe.payload(), 3, 2);
+    const auto decoded = triangles_in(recipe.payload(), 3, 2);
     if (node == 2) {
       ASSERT_TRUE(decoded);
       EXPECT_EQ(decoded->back(), (Triangle{0, 2, 1}));
     } else {
-      expect_rule(decoded, "R-CON-04", "join_target");
+      expect_invalid(decoded, "R-CON-04", "join_target");
     }
   }
 }
@@ -152,12 +140,12 @@ TEST(ParseConnectivity, DegenerateVertexExists) {
   for (const std::uint32_t degenerate_vertex : {2U, 3U}) {
     Recipe recipe(1);
     for (int i = 0; i < 3; ++i) recipe.section.bypass(2, degenerate_vertex);
-    const auto decoded = parse(recipe.payload(), 3, 1);
+    const auto decoded = triangles_in(recipe.payload(), 3, 1);
     if (degenerate_vertex < 3) {
       ASSERT_TRUE(decoded);
       EXPECT_EQ(*decoded, (Triangles{{2, 2, 2}}));
     } else {
-      expect_rule(decoded, "R-CON-05", "degenerate_vertex");
+      expect_invalid(decoded, "R-CON-05", "degenerate_vertex");
     }
   }
 }
@@ -167,7 +155,7 @@ TEST(ParseConnectivity, ShortPayloadWithManyClaimedTrianglesFails) {
   for (const int fill : {0x00, 0x55, 0xFE}) {
     std::vector<std::uint8_t> payload(20, static_cast<std::uint8_t>(fill));
     payload[0] = 0xA0;
-    EXPECT_FALSE(parse(payload, 4000000, 8000000)) << fill;
+    EXPECT_FALSE(triangles_in(payload, 4000000, 8000000)) << fill;
   }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/codec/bits/bit_writer.h"
+#include "decoder/testing/expected_errors.h"
 
 namespace rlpc {
 namespace {
@@ -17,9 +18,9 @@ using Index = Result<GofIndex>;
 
 // num_index_gofs_minus1 2, first_gof_offset 45, then index_gof_frames_minus1 and
 // index_gof_bytes: 2 and 100, 0 and 20, 1 and 70000, alignment
-const Bytes kLegal{0x60, 0xB9, 0x81, 0x96, 0x15, 0x40, 0x00, 0x11, 0x17, 0x10};
+const Bytes kLegalIndex{0x60, 0xB9, 0x81, 0x96, 0x15, 0x40, 0x00, 0x11, 0x17, 0x10};
 
-Index parse(const Bytes& payload, std::uint32_t num_frames) {
+Index index_in(const Bytes& payload, std::uint32_t num_frames) {
   BitReader r(payload);
   SequenceHeader header;
   header.num_frames = num_frames;
@@ -40,15 +41,8 @@ Bytes payload_of(std::uint32_t num_index_gofs_minus1,
   return w.take();
 }
 
-void expect_invalid(const Index& index, const std::string& rule, const std::string& element) {
-  ASSERT_FALSE(index);
-  EXPECT_EQ(index.error().code, Errc::kInvalid);
-  EXPECT_EQ(index.error().rule, rule);
-  EXPECT_EQ(index.error().element, element);
-}
-
 TEST(ParseGofIndex, GivesOffsetsAndFirstFrames) {
-  const Index index = parse(kLegal, 6);
+  const Index index = index_in(kLegalIndex, 6);
   ASSERT_TRUE(index);
   ASSERT_EQ(index->gofs.size(), 3U);
   EXPECT_EQ(index->gofs[0].offset, 45U);
@@ -60,9 +54,10 @@ TEST(ParseGofIndex, GivesOffsetsAndFirstFrames) {
 }
 
 TEST(ParseGofIndex, EveryProperPrefixFails) {
-  for (std::size_t n = 0; n < kLegal.size(); ++n) {
-    const Bytes exact(kLegal.begin(), kLegal.begin() + static_cast<std::ptrdiff_t>(n));
-    const Index index = parse(exact, 6);
+  for (std::size_t n = 0; n < kLegalIndex.size(); ++n) {
+    const Bytes exact(kLegalIndex.begin(),
+                      kLegalIndex.begin() + static_cast<std::ptrdiff_t>(n));
+    const Index index = index_in(exact, 6);
     ASSERT_FALSE(index) << n;
     EXPECT_EQ(index.error().code, Errc::kTruncated) << n;
   }
@@ -70,39 +65,39 @@ TEST(ParseGofIndex, EveryProperPrefixFails) {
 
 TEST(ParseGofIndex, OffsetsBeyond32BitsAddUp) {
   const std::uint32_t max_size = 0xFFFFFFFE;
-  const Index index = parse(payload_of(2, {{0, max_size}, {0, max_size}, {0, max_size}}), 3);
+  const Index index = index_in(payload_of(2, {{0, max_size}, {0, max_size}, {0, max_size}}), 3);
   ASSERT_TRUE(index);
   EXPECT_EQ(index->gofs[2].offset, 45 + 2 * std::uint64_t{max_size});
 }
 
 TEST(ParseGofIndex, FramesOfTheGofsAreThoseOfTheSequence) {
-  EXPECT_TRUE(parse(payload_of(1, {{2, 9}, {3, 9}}), 7));
+  EXPECT_TRUE(index_in(payload_of(1, {{2, 9}, {3, 9}}), 7));
   // One frame fewer than the sequence has, and one more.
-  expect_invalid(parse(payload_of(1, {{2, 9}, {2, 9}}), 7), "R-IDX-01", "index_gof_bytes");
-  expect_invalid(parse(payload_of(1, {{2, 9}, {4, 9}}), 7), "R-IDX-01",
+  expect_invalid(index_in(payload_of(1, {{2, 9}, {2, 9}}), 7), "R-IDX-01", "index_gof_bytes");
+  expect_invalid(index_in(payload_of(1, {{2, 9}, {4, 9}}), 7), "R-IDX-01",
                  "index_gof_frames_minus1");
   // The GOFs before the last one already have all frames.
-  expect_invalid(parse(payload_of(2, {{2, 9}, {3, 9}, {0, 9}}), 7), "R-IDX-01",
+  expect_invalid(index_in(payload_of(2, {{2, 9}, {3, 9}, {0, 9}}), 7), "R-IDX-01",
                  "index_gof_bytes");
-  expect_invalid(parse(payload_of(0, {{7, 9}}), 7), "R-IDX-01", "index_gof_frames_minus1");
+  expect_invalid(index_in(payload_of(0, {{7, 9}}), 7), "R-IDX-01", "index_gof_frames_minus1");
 }
 
 TEST(ParseGofIndex, HasAtMostOneGofPerFrame) {
-  EXPECT_TRUE(parse(payload_of(1, {{0, 9}, {0, 9}}), 2));
-  expect_invalid(parse(payload_of(2, {{0, 9}, {0, 9}, {0, 9}}), 2), "R-IDX-01",
+  EXPECT_TRUE(index_in(payload_of(1, {{0, 9}, {0, 9}}), 2));
+  expect_invalid(index_in(payload_of(2, {{0, 9}, {0, 9}, {0, 9}}), 2), "R-IDX-01",
                  "num_index_gofs_minus1");
   // Declaring too many GOFs fails before any of them is read.
-  expect_invalid(parse(payload_of(0xFFFFFFFE, {}), 1 << 24), "R-IDX-01",
+  expect_invalid(index_in(payload_of(0xFFFFFFFE, {}), 1 << 24), "R-IDX-01",
                  "num_index_gofs_minus1");
 }
 
 TEST(ParseGofIndex, AlignmentIsZeroAndEndsThePayload) {
-  Bytes wrong = kLegal;
+  Bytes wrong = kLegalIndex;
   wrong.back() |= 1;
-  expect_invalid(parse(wrong, 6), "R-BIT-02", "alignment_zero_bits");
-  Bytes longer = kLegal;
+  expect_invalid(index_in(wrong, 6), "R-BIT-02", "alignment_zero_bits");
+  Bytes longer = kLegalIndex;
   longer.push_back(0);
-  expect_invalid(parse(longer, 6), "R-BIT-03", "unit_payload");
+  expect_invalid(index_in(longer, 6), "R-BIT-03", "unit_payload");
 }
 
 }  // namespace

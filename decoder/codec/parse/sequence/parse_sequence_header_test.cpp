@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/codec/bits/bit_writer.h"
+#include "decoder/testing/expected_errors.h"
 
 namespace rlpc {
 namespace {
@@ -17,10 +18,10 @@ using Bytes = std::vector<std::uint8_t>;
 // profile_idc 0, level_idc 1, num_vertices_minus1 4, num_triangles 3, num_frames_minus1 4,
 // frame_rate_numerator_minus1 29999, frame_rate_denominator_minus1 1000, grid_log2_step -9,
 // grid_origin 5, -6 and 70, position_bits 12, alignment
-const Bytes kLegal{0x00, 0x01, 0x29, 0x0A, 0x00, 0x07, 0x53, 0x00,
-                   0x07, 0xD2, 0x13, 0x14, 0x34, 0x04, 0x63, 0x00};
+const Bytes kLegalHeader{0x00, 0x01, 0x29, 0x0A, 0x00, 0x07, 0x53, 0x00,
+                         0x07, 0xD2, 0x13, 0x14, 0x34, 0x04, 0x63, 0x00};
 
-Result<SequenceHeader> parse(const Bytes& payload, std::uint64_t first_bit = 0) {
+Result<SequenceHeader> header_in(const Bytes& payload, std::uint64_t first_bit = 0) {
   BitReader r(payload, first_bit);
   return parse_sequence_header(r, 0);
 }
@@ -55,17 +56,8 @@ struct Elements {
   }
 };
 
-void expect_error(const Bytes& payload, Errc code, const std::string& rule,
-                  const std::string& element) {
-  const auto header = parse(payload);
-  ASSERT_FALSE(header) << element;
-  EXPECT_EQ(header.error().code, code) << element;
-  EXPECT_EQ(header.error().rule, rule) << element;
-  EXPECT_EQ(header.error().element, element);
-}
-
 TEST(ParseSequenceHeader, GivesTheElements) {
-  const auto h = parse(kLegal);
+  const auto h = header_in(kLegalHeader);
   ASSERT_TRUE(h);
   EXPECT_EQ(h->profile_idc, 0U);
   EXPECT_EQ(h->level_idc, 1U);
@@ -78,9 +70,10 @@ TEST(ParseSequenceHeader, GivesTheElements) {
 }
 
 TEST(ParseSequenceHeader, EveryProperPrefixFails) {
-  for (std::size_t n = 0; n < kLegal.size(); ++n) {
-    const Bytes exact(kLegal.begin(), kLegal.begin() + static_cast<std::ptrdiff_t>(n));
-    const auto h = parse(exact);
+  for (std::size_t n = 0; n < kLegalHeader.size(); ++n) {
+    const Bytes exact(kLegalHeader.begin(),
+                      kLegalHeader.begin() + static_cast<std::ptrdiff_t>(n));
+    const auto h = header_in(exact);
     ASSERT_FALSE(h) << n;
     EXPECT_EQ(h.error().code, Errc::kTruncated) << n;
     EXPECT_EQ(h.error().rule, std::string("R-BIT-01")) << n;
@@ -88,21 +81,21 @@ TEST(ParseSequenceHeader, EveryProperPrefixFails) {
 }
 
 TEST(ParseSequenceHeader, BytesLeftOverAreInvalid) {
-  Bytes longer = kLegal;
+  Bytes longer = kLegalHeader;
   longer.push_back(0);
-  expect_error(longer, Errc::kInvalid, "R-BIT-03", "unit_payload");
+  expect_error(header_in(longer), Errc::kInvalid, "R-BIT-03", "unit_payload");
 }
 
 TEST(ParseSequenceHeader, AlignmentBitsAreZero) {
-  Bytes wrong = kLegal;
+  Bytes wrong = kLegalHeader;
   wrong.back() |= 1;
-  expect_error(wrong, Errc::kInvalid, "R-BIT-02", "alignment_zero_bits");
+  expect_error(header_in(wrong), Errc::kInvalid, "R-BIT-02", "alignment_zero_bits");
 }
 
 TEST(ParseSequenceHeader, ErrorsCountFromTheStartOfTheStream) {
-  Bytes wrong = kLegal;
+  Bytes wrong = kLegalHeader;
   wrong[1] = 0;  // level_idc
-  const auto h = parse(wrong, 120);
+  const auto h = header_in(wrong, 120);
   ASSERT_FALSE(h);
   EXPECT_EQ(h.error().bit_pos, 128U);
 }
@@ -111,7 +104,7 @@ TEST(ParseSequenceHeader, OtherProfilesAndLevelsAreUnsupportedNotInvalid) {
   for (const std::uint32_t profile_idc : {1U, 255U}) {
     Elements e;
     e.profile_idc = profile_idc;
-    expect_error(e.payload(), Errc::kUnsupported, "R-HDR-01", "profile_idc");
+    expect_error(header_in(e.payload()), Errc::kUnsupported, "R-HDR-01", "profile_idc");
   }
   const Bytes baseline = Elements{}.payload();
   BitReader r(baseline);
@@ -123,7 +116,7 @@ TEST(ParseSequenceHeader, OtherProfilesAndLevelsAreUnsupportedNotInvalid) {
   for (const std::uint32_t level_idc : {0U, kMaxLevelIdc + 1, 255U}) {
     Elements e;
     e.level_idc = level_idc;
-    expect_error(e.payload(), Errc::kUnsupported, "R-HDR-02", "level_idc");
+    expect_error(header_in(e.payload()), Errc::kUnsupported, "R-HDR-02", "level_idc");
   }
 }
 
@@ -134,14 +127,14 @@ TEST(ParseSequenceHeader, LevelsBoundVerticesAndTriangles) {
     e.level_idc = level_idc;
     e.num_vertices_minus1 = level.max_vertices - 1;
     e.num_triangles = level.max_triangles;
-    const auto largest = parse(e.payload());
+    const auto largest = header_in(e.payload());
     ASSERT_TRUE(largest);
     EXPECT_EQ(largest->num_vertices, level.max_vertices);
     EXPECT_EQ(largest->num_triangles, level.max_triangles);
     ++e.num_triangles;
-    expect_error(e.payload(), Errc::kInvalid, "R-LVL-02", "num_triangles");
+    expect_error(header_in(e.payload()), Errc::kInvalid, "R-LVL-02", "num_triangles");
     ++e.num_vertices_minus1;
-    expect_error(e.payload(), Errc::kInvalid, "R-LVL-01", "num_vertices_minus1");
+    expect_error(header_in(e.payload()), Errc::kInvalid, "R-LVL-01", "num_vertices_minus1");
   }
 }
 
@@ -170,9 +163,9 @@ TEST(ParseSequenceHeader, EveryElementIsTakenUpToItsBoundsAndNotBeyond) {
   for (const Case& k : cases) {
     Elements e;
     k.set(e, false);
-    EXPECT_TRUE(parse(e.payload())) << k.element;
+    EXPECT_TRUE(header_in(e.payload())) << k.element;
     k.set(e, true);
-    expect_error(e.payload(), Errc::kInvalid, k.rule, k.element);
+    expect_error(header_in(e.payload()), Errc::kInvalid, k.rule, k.element);
   }
 }
 
@@ -180,7 +173,7 @@ TEST(ParseSequenceHeader, FrameRatesTakeAll32BitNumbersButZero) {
   Elements e;
   e.frame_rate_numerator_minus1 = 0xFFFFFFFE;
   e.frame_rate_denominator_minus1 = 0xFFFFFFFE;
-  const auto h = parse(e.payload());
+  const auto h = header_in(e.payload());
   ASSERT_TRUE(h);
   EXPECT_EQ(h->frame_rate, (FrameRate{0xFFFFFFFF, 0xFFFFFFFF}));
 
@@ -194,7 +187,7 @@ TEST(ParseSequenceHeader, FrameRatesTakeAll32BitNumbersButZero) {
   w.u(1, 1);
   w.u(32, 0);
   w.byte_alignment();
-  expect_error(w.take(), Errc::kInvalid, "R-HDR-03", "frame_rate_numerator_minus1");
+  expect_error(header_in(w.take()), Errc::kInvalid, "R-HDR-03", "frame_rate_numerator_minus1");
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "common/testing/element_names.h"
 #include "common/testing/section_recipe.h"
 #include "decoder/codec/parse/parse_gof_header.h"
+#include "decoder/testing/expected_errors.h"
 
 namespace rlpc {
 namespace {
@@ -45,14 +46,6 @@ Result<ClusterGof> parse_legal(const Bytes& payload, Trace* trace = nullptr,
   const SequenceHeader header = header_of(5, 5);
   return parse_clusters(r, header, topology, parse_gof_header(r, header, 2),
                         {max_memory_bytes, 0});
-}
-
-void expect_invalid(const Result<ClusterGof>& gof, const std::string& rule,
-                    const std::string& element) {
-  ASSERT_FALSE(gof) << rule;
-  EXPECT_EQ(gof.error().code, Errc::kInvalid);
-  EXPECT_EQ(gof.error().rule, rule);
-  EXPECT_EQ(gof.error().element, element);
 }
 
 TEST(ParseGof, GivesTheElements) {

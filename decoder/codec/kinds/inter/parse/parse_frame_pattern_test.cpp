@@ -34,7 +34,7 @@ FramePattern parse_legal(const FramePatternRecipe& recipe) {
   return pattern;
 }
 
-Result<bool> parse(const FramePatternRecipe& recipe) {
+Result<bool> parse_recipe(const FramePatternRecipe& recipe) {
   const Bytes bytes = bytes_of(recipe);
   BitReader r(bytes, kPayloadBitPos);
   parse_frame_pattern(r);
@@ -59,10 +59,10 @@ TEST(ParseFramePattern, OfDyadicPeriodsTakesOneToSix) {
     EXPECT_EQ(pattern.period(), 1U << log2);
     EXPECT_EQ(pattern.num_depths(), log2 + 1);
   }
-  expect_invalid_at(parse(FramePatternRecipe::dyadic(0, 0)), "R-FRM-05", "pattern_period_log2",
-                    2);
-  expect_invalid_at(parse(FramePatternRecipe::dyadic(7, 0)), "R-FRM-05", "pattern_period_log2",
-                    2);
+  expect_invalid_at(parse_recipe(FramePatternRecipe::dyadic(0, 0)), "R-FRM-05",
+                    "pattern_period_log2", 2);
+  expect_invalid_at(parse_recipe(FramePatternRecipe::dyadic(7, 0)), "R-FRM-05",
+                    "pattern_period_log2", 2);
 }
 
 TEST(ParseFramePattern, HasFewerHigherLayersThanDepths) {
@@ -72,7 +72,7 @@ TEST(ParseFramePattern, HasFewerHigherLayersThanDepths) {
       if (layers_minus1 <= log2) {
         EXPECT_EQ(parse_legal(recipe).temporal_layers, layers_minus1 + 1);
       } else {
-        expect_invalid_at(parse(recipe), "R-FRM-07", "temporal_layers_minus1", 5);
+        expect_invalid_at(parse_recipe(recipe), "R-FRM-07", "temporal_layers_minus1", 5);
       }
     }
   }
@@ -116,8 +116,8 @@ TEST(ParseFramePattern, TakesAllDepths) {
     EXPECT_EQ(pattern.num_depths(), depth + 1);
     EXPECT_EQ(pattern.temporal_layers, depth + 1);
     if (depth == 0 || depth == 7) continue;
-    expect_invalid_at(parse(FramePatternRecipe::from_entries(entries, depth + 1)), "R-FRM-07",
-                      "temporal_layers_minus1", 43);
+    expect_invalid_at(parse_recipe(FramePatternRecipe::from_entries(entries, depth + 1)),
+                      "R-FRM-07", "temporal_layers_minus1", 43);
   }
 }
 
@@ -160,8 +160,8 @@ TEST(ParseFramePattern, EntriesFollowTheirReferences) {
   };
   for (std::size_t i = 0; i < list.size(); ++i) {
     SCOPED_TRACE(i);
-    expect_invalid_at(parse(FramePatternRecipe::from_entries(list[i].entries, 0)), "R-FRM-06",
-                      list[i].element, list[i].bit_pos);
+    expect_invalid_at(parse_recipe(FramePatternRecipe::from_entries(list[i].entries, 0)),
+                      "R-FRM-06", list[i].element, list[i].bit_pos);
   }
 }
 

@@ -14,16 +14,16 @@
 namespace rlpc {
 namespace {
 
-Result<bool> parse(const InterGofRecipe& recipe, InterGofUnits& units) {
+Result<bool> parse_gof(const InterGofRecipe& recipe, InterGofUnits& units) {
   return units.gof(recipe.payload());
 }
-Result<bool> parse(const InterGofRecipe& recipe) {
+Result<bool> parse_gof(const InterGofRecipe& recipe) {
   InterGofUnits units(high_header(9, 40), kSquares);
-  return parse(recipe, units);
+  return parse_gof(recipe, units);
 }
 InterGof settings_of(const InterGofRecipe& recipe) {
   InterGofUnits units(high_header(9, 40), kSquares);
-  EXPECT_TRUE(parse(recipe, units));
+  EXPECT_TRUE(parse_gof(recipe, units));
   return units.parser().finish();
 }
 
@@ -115,12 +115,12 @@ TEST(ParseInterGofRanges, ElementsAreTakenUpToTheirBoundsAndNotBeyond) {
       if (bound.max < less) continue;
       InterGofRecipe recipe;
       bound.set(recipe, bound.max - less);
-      const auto ok = parse(recipe);
+      const auto ok = parse_gof(recipe);
       EXPECT_TRUE(ok) << ok.error().rule << ' ' << ok.error().element;
     }
     InterGofRecipe recipe;
     bound.set(recipe, bound.max + 1);
-    expect_invalid_at(parse(recipe), bound.rule, bound.element, bound.bit_pos);
+    expect_invalid_at(parse_gof(recipe), bound.rule, bound.element, bound.bit_pos);
   }
 }
 
@@ -199,7 +199,7 @@ TEST(ParseInterGofRanges, LearningVerticesAreBoundedByTheLevel) {
     recipe.frame_step_minus1.assign(log2 + 1, 0);
     recipe.layer_step_minus1 = {15};
     recipe.learning_flag = learning;
-    return parse(recipe, units);
+    return parse_gof(recipe, units);
   };
   EXPECT_TRUE(parse_learning(16384, 1, 1, true));
   EXPECT_TRUE(parse_learning(8192, 1, 2, true));
@@ -221,7 +221,7 @@ TEST(ParseInterGofRanges, PatchesOfVerticesAreThoseOfTheGof) {
               PatchOfVertex(9, static_cast<std::uint16_t>(num_patches - 1)));
     if ((num_patches & (num_patches - 1)) == 0) continue;  // all bits of an index are taken
     recipe.patch_map = patch_map_of(num_patches, num_patches);
-    expect_invalid(parse(recipe), "R-GOF-08", "cluster_idx");
+    expect_invalid(parse_gof(recipe), "R-GOF-08", "cluster_idx");
   }
 }
 
@@ -233,10 +233,10 @@ TEST(ParseInterGofRanges, SettingsStayWithinTheMemoryOfTheCaller) {
   recipe.patch_map = patch_map_of(2, 1);
   const std::uint64_t needed = memory_of_frames(9, 5, settings_of(recipe));
   InterGofUnits enough(high_header(9, 40), kSquares, needed);
-  EXPECT_TRUE(parse(recipe, enough));
+  EXPECT_TRUE(parse_gof(recipe, enough));
   EXPECT_EQ(enough.parser().memory_bytes(), needed);
   InterGofUnits too_little(high_header(9, 40), kSquares, needed - 1);
-  const auto parsed = parse(recipe, too_little);
+  const auto parsed = parse_gof(recipe, too_little);
   ASSERT_FALSE(parsed);
   EXPECT_EQ(parsed.error().code, Errc::kLimitExceeded);
   EXPECT_STREQ(parsed.error().element, "frames_of_gof");

@@ -14,17 +14,13 @@
 namespace rlpc {
 namespace {
 
-// Two by two squares: nine vertices, in three layers.
-const std::vector<Triangle> kGrid{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {3, 1, 5},
-                                  {3, 5, 6}, {3, 6, 7}, {3, 7, 4}, {7, 6, 8}};
-
 struct Gof {
   SkinnedGofUnits units;
   Result<bool> parsed;
   SkinnedGof gof;
 
   explicit Gof(const SkinnedGofRecipe& recipe)
-      : units(recipe.is_high() ? high_header(9, 21) : main_header(9, 1), kGrid),
+      : units(recipe.is_high() ? high_header(9, 21) : main_header(9, 1), kSquares),
         parsed(units.gof(recipe.payload())) {
     if (parsed) gof = units.parser().finish();
   }

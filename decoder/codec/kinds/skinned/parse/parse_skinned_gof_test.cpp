@@ -34,12 +34,8 @@ const Bytes kGroupFiner{0x48, 0xB1, 0x60, 0x47, 0x87};
 const Bytes kThird{0x70, 0xFD, 0x98, 0xFD, 0x76, 0x3F, 0x1F, 0x3F};
 const std::vector<Bytes> kSlices{kRest, kRestFiner, kGroup, kGroupFiner, kThird};
 
-// Two by two squares: nine vertices, in three layers.
-const std::vector<Triangle> kGrid{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {3, 1, 5},
-                                  {3, 5, 6}, {3, 6, 7}, {3, 7, 4}, {7, 6, 8}};
-
 SkinnedGofUnits legal_units(std::uint64_t max_memory_bytes = std::uint64_t{1} << 30) {
-  return SkinnedGofUnits(main_header(9, 5), kGrid, max_memory_bytes);
+  return SkinnedGofUnits(main_header(9, 5), kSquares, max_memory_bytes);
 }
 
 TEST(ParseSkinnedGof, GivesTheElements) {
