@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "encoder/meshes/axes.h"
+#include "encoder/testing/turned.h"
 
 namespace rlpc {
 namespace {
@@ -48,11 +49,6 @@ Pose rotated(Pose pose, float angle) {
     pose[i + 1] = std::cos(angle) * y - std::sin(angle) * z;
     pose[i + 2] = std::sin(angle) * y + std::cos(angle) * z;
   }
-  return pose;
-}
-
-Pose turned(const std::string& axes, Pose pose) {
-  turn(*parse_axes(axes), pose);
   return pose;
 }
 

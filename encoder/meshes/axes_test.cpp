@@ -9,13 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "encoder/testing/turned.h"
+
 namespace rlpc {
 namespace {
-
-std::vector<float> turned(const std::string& text, std::vector<float> xyz) {
-  turn(*parse_axes(text), xyz);
-  return xyz;
-}
 
 TEST(Axes, AreSignedAxesOfTheInput) {
   EXPECT_EQ(turned("x,y,z", {1, 2, 3}), (std::vector<float>{1, 2, 3}));

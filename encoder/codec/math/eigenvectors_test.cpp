@@ -7,14 +7,10 @@
 #include <random>
 #include <vector>
 
+#include "encoder/testing/dot.h"
+
 namespace rlpc {
 namespace {
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
 
 // A symmetric matrix with the given eigenvalues; all others are `floor`. The eigenvectors are
 // the axes reflected by I - 2 h h^T.

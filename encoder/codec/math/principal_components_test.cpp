@@ -8,14 +8,10 @@
 #include <span>
 #include <vector>
 
+#include "encoder/testing/dot.h"
+
 namespace rlpc {
 namespace {
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
 
 // Returns the sum of `rank` outer products of random vectors.
 TrajectoryMatrix random_matrix(unsigned seed, std::size_t num_values, std::size_t num_frames,

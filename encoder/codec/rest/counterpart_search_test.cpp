@@ -12,26 +12,26 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kWidth = 40;
-constexpr std::uint32_t kStep = 24;
-constexpr int kPositionBits = 20;
-
 // A smooth sheet, whose squares all have nearly the same shape.
 struct Sheet {
+  static constexpr std::uint32_t kSide = 40;  // vertices
+  static constexpr std::uint32_t kRestStep = 24;
+  static constexpr int kBits = 20;  // position_bits
+
   std::vector<Triangle> triangles;
   std::vector<std::int32_t> wanted;
 
   Sheet() {
-    for (std::uint32_t y = 0; y < kWidth; ++y) {
-      for (std::uint32_t x = 0; x < kWidth; ++x) {
+    for (std::uint32_t y = 0; y < kSide; ++y) {
+      for (std::uint32_t x = 0; x < kSide; ++x) {
         const double height = 200.0 * std::sin(0.05 * x) * std::sin(0.04 * y);
         wanted.insert(wanted.end(),
                       {static_cast<std::int32_t>(1000 * x), static_cast<std::int32_t>(1000 * y),
                        static_cast<std::int32_t>(height)});
-        if (x + 1 == kWidth || y + 1 == kWidth) continue;
-        const std::uint32_t v = y * kWidth + x;
-        triangles.push_back({v, v + 1, v + kWidth + 1});
-        triangles.push_back({v, v + kWidth + 1, v + kWidth});
+        if (x + 1 == kSide || y + 1 == kSide) continue;
+        const std::uint32_t v = y * kSide + x;
+        triangles.push_back({v, v + 1, v + kSide + 1});
+        triangles.push_back({v, v + kSide + 1, v + kSide});
       }
     }
   }
@@ -40,10 +40,10 @@ struct Sheet {
 // Without a bound, 97 % of the vertices find candidates, hundreds each, and follow them.
 TEST(CounterpartSearch, RestsAfterLongSearches) {
   const Sheet sheet;
-  const Topology topology = make_topology(kWidth * kWidth, sheet.triangles);
+  const Topology topology = make_topology(Sheet::kSide * Sheet::kSide, sheet.triangles);
   const OrderedMeshes meshes(topology, sheet.triangles);
   const RestOrder& order = meshes[Prediction::kLayers].rest_order();
-  CounterpartSearch search(order, sheet.wanted, kStep, kPositionBits);
+  CounterpartSearch search(order, sheet.wanted, Sheet::kRestStep, Sheet::kBits);
   Counterparts counterparts(order);
   std::uint32_t found = 0;
   for (const std::uint32_t v : order.order()) {
@@ -53,7 +53,7 @@ TEST(CounterpartSearch, RestsAfterLongSearches) {
     search.add(v);
   }
   EXPECT_GT(found, 0U);
-  EXPECT_LT(found, kWidth * kWidth / 2);
+  EXPECT_LT(found, Sheet::kSide * Sheet::kSide / 2);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace rlpc {
 namespace {
 
-EncoderSettings settings_of(Profile profile, std::size_t num_clips) {
+EncoderSettings settings_with_clips(Profile profile, std::size_t num_clips) {
   EncoderSettings settings;
   settings.profile = profile;
   settings.clips.resize(num_clips);
@@ -13,14 +13,14 @@ EncoderSettings settings_of(Profile profile, std::size_t num_clips) {
 }
 
 TEST(LongestGof, IsThatOfTheProfile) {
-  EXPECT_EQ(longest_gof(settings_of(Profile::kBaseline, 3), 100), 128);
-  EXPECT_EQ(longest_gof(settings_of(Profile::kMain, 0), 100), 128);
-  EXPECT_EQ(longest_gof(settings_of(Profile::kMain, 1), 100), 128);
-  EXPECT_EQ(longest_gof(settings_of(Profile::kHigh, 3), 100), 256);
+  EXPECT_EQ(longest_gof(settings_with_clips(Profile::kBaseline, 3), 100), 128);
+  EXPECT_EQ(longest_gof(settings_with_clips(Profile::kMain, 0), 100), 128);
+  EXPECT_EQ(longest_gof(settings_with_clips(Profile::kMain, 1), 100), 128);
+  EXPECT_EQ(longest_gof(settings_with_clips(Profile::kHigh, 3), 100), 256);
 }
 
 TEST(LongestGof, WithSeveralClipsIsWhatMemoryAllows) {
-  EncoderSettings settings = settings_of(Profile::kMain, 2);
+  EncoderSettings settings = settings_with_clips(Profile::kMain, 2);
   EXPECT_EQ(longest_gof(settings, 100), 4096);
   EXPECT_EQ(longest_gof(settings, 1U << 15), 2048);
   EXPECT_EQ(longest_gof(settings, 1U << 20), 128);
@@ -29,14 +29,14 @@ TEST(LongestGof, WithSeveralClipsIsWhatMemoryAllows) {
 }
 
 TEST(LongestGof, OfAKnownSequenceIsWhatMemoryAllows) {
-  EXPECT_EQ(longest_gof_of_all(settings_of(Profile::kMain, 0), 100), 4096);
-  EXPECT_EQ(longest_gof_of_all(settings_of(Profile::kMain, 1), 1U << 15), 2048);
-  EXPECT_EQ(longest_gof_of_all(settings_of(Profile::kBaseline, 0), 100), 128);
-  EXPECT_EQ(longest_gof_of_all(settings_of(Profile::kHigh, 0), 100), 256);
+  EXPECT_EQ(longest_gof_of_all(settings_with_clips(Profile::kMain, 0), 100), 4096);
+  EXPECT_EQ(longest_gof_of_all(settings_with_clips(Profile::kMain, 1), 1U << 15), 2048);
+  EXPECT_EQ(longest_gof_of_all(settings_with_clips(Profile::kBaseline, 0), 100), 128);
+  EXPECT_EQ(longest_gof_of_all(settings_with_clips(Profile::kHigh, 0), 100), 256);
 }
 
 TEST(LongestGof, IsTheOneAskedFor) {
-  EncoderSettings settings = settings_of(Profile::kMain, 2);
+  EncoderSettings settings = settings_with_clips(Profile::kMain, 2);
   settings.gof_frames = 7;
   EXPECT_EQ(longest_gof(settings, 100), 7);
 }

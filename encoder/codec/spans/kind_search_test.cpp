@@ -12,7 +12,7 @@ namespace rlpc {
 namespace {
 
 // Counts the calls of a kind and its coders.
-struct Calls {
+struct KindCalls {
   int encodings = 0;
   int released = 0;
 };
@@ -27,7 +27,7 @@ struct Answers {
 
 class FakeCoder : public SpanCoder {
  public:
-  FakeCoder(const Answers& answers, Calls& calls) : answers_(answers), calls_(calls) {}
+  FakeCoder(const Answers& answers, KindCalls& calls) : answers_(answers), calls_(calls) {}
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return false; }
   EncodedSpan encode(double /*step*/, double /*analysis_step*/) override {
     ++calls_.encodings;
@@ -43,24 +43,24 @@ class FakeCoder : public SpanCoder {
 
  private:
   Answers answers_;
-  Calls& calls_;
+  KindCalls& calls_;
 };
 
 class FakeKind : public KindEncoder {
  public:
-  FakeKind(const Answers& answers, Calls& calls) : answers_(answers), calls_(calls) {}
+  FakeKind(const Answers& answers, KindCalls& calls) : answers_(answers), calls_(calls) {}
   std::unique_ptr<SpanCoder> make_coder(const SpanFrames& /*frames*/) const override {
     return std::make_unique<FakeCoder>(answers_, calls_);
   }
 
  private:
   Answers answers_;
-  Calls& calls_;
+  KindCalls& calls_;
 };
 
 struct Fixture {
   void add(const Answers& answers) {
-    calls.push_back(std::make_unique<Calls>());
+    calls.push_back(std::make_unique<KindCalls>());
     kinds.push_back(std::make_unique<FakeKind>(answers, *calls.back()));
   }
   static std::size_t bytes(SpanCoder& search, double step) {
@@ -69,7 +69,7 @@ struct Fixture {
 
   SpanFrames frames{.num_vertices = 1, .num_frames = 1, .xyz = {0.0, 0.0, 0.0}};
   KindEncoders kinds;
-  std::vector<std::unique_ptr<Calls>> calls;
+  std::vector<std::unique_ptr<KindCalls>> calls;
 };
 
 TEST(KindSearch, TakesTheCheapestKind) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kVertices = 2;
 
-struct Calls {
+struct CoderCalls {
   int encodings = 0;
   int released = 0;
   std::vector<std::size_t> sizes;  // number of values in the frames, at each encoding
@@ -22,7 +22,7 @@ struct Calls {
 // Decodes to the frames, rounded, after a unit with the number of its first frame.
 class CopyingCoder : public SpanCoder {
  public:
-  CopyingCoder(const SpanFrames& frames, bool reads, Calls& calls)
+  CopyingCoder(const SpanFrames& frames, bool reads, CoderCalls& calls)
       : frames_(frames), reads_(reads), calls_(calls) {}
   bool needs_frames(double step, double /*analysis_step*/) const override {
     return reads_ || step > 5;
@@ -53,7 +53,7 @@ class CopyingCoder : public SpanCoder {
   const SpanFrames& frames_;
   SpanFrames copy_;
   bool reads_;
-  Calls& calls_;
+  CoderCalls& calls_;
 };
 
 SpanFrames frames_of(std::uint32_t num_frames, std::uint32_t num_gofs) {
@@ -62,7 +62,7 @@ SpanFrames frames_of(std::uint32_t num_frames, std::uint32_t num_gofs) {
   return frames;
 }
 
-SplitCoder::MakeCoder copying(Calls& calls, bool reads = true) {
+SplitCoder::MakeCoder copying(CoderCalls& calls, bool reads = true) {
   return [&calls, reads](const SpanFrames& frames) {
     return std::make_unique<CopyingCoder>(frames, reads, calls);
   };
@@ -70,7 +70,7 @@ SplitCoder::MakeCoder copying(Calls& calls, bool reads = true) {
 
 TEST(SplitCoder, EncodesEachGofByItself) {
   const SpanFrames frames = frames_of(8, 3);
-  Calls calls;
+  CoderCalls calls;
   SplitCoder coder(frames, copying(calls));
   const EncodedSpan all = coder.encode(2, 2);
   ASSERT_EQ(all.units.size(), 6U);
@@ -86,7 +86,7 @@ TEST(SplitCoder, EncodesEachGofByItself) {
 
 TEST(SplitCoder, DecodesEachFrameByItsGof) {
   const SpanFrames frames = frames_of(8, 3);
-  Calls calls;
+  CoderCalls calls;
   SplitCoder coder(frames, copying(calls));
   const EncodedSpan all = coder.encode(2, 2);
   std::vector<std::int32_t> positions(3 * kVertices);
@@ -100,7 +100,7 @@ TEST(SplitCoder, DecodesEachFrameByItsGof) {
 
 TEST(SplitCoder, AddsUpAndTakesTheLargest) {
   const SpanFrames frames = frames_of(8, 3);
-  Calls calls;
+  CoderCalls calls;
   SplitCoder coder(frames, copying(calls));
   const EncodedSpan all = coder.encode(2, 2);
   EXPECT_EQ(all.num_factors, 30U);
@@ -113,7 +113,7 @@ TEST(SplitCoder, AddsUpAndTakesTheLargest) {
 
 TEST(SplitCoder, ReadsFramesOnlyWhereACoderDoes) {
   const SpanFrames frames = frames_of(8, 2);
-  Calls calls;
+  CoderCalls calls;
   SplitCoder coder(frames, copying(calls, false));
   EXPECT_FALSE(coder.needs_frames(2, 2));
   EXPECT_TRUE(coder.needs_frames(6, 6));
@@ -124,7 +124,7 @@ TEST(SplitCoder, ReadsFramesOnlyWhereACoderDoes) {
 
 TEST(SplitCoder, ReleasesTheAnalysisOfAll) {
   const SpanFrames frames = frames_of(8, 4);
-  Calls calls;
+  CoderCalls calls;
   SplitCoder coder(frames, copying(calls));
   coder.release_analysis();
   EXPECT_EQ(calls.released, 4);

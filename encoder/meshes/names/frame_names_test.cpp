@@ -10,16 +10,10 @@
 #include <vector>
 
 #include "encoder/meshes/names/frame_pattern.h"
+#include "encoder/testing/random_names.h"
 
 namespace rlpc {
 namespace {
-
-using Names = std::vector<std::string>;
-using Random = std::mt19937;
-
-std::uint32_t below(Random& random, std::size_t count) {
-  return static_cast<std::uint32_t>(random() % count);
-}
 
 // Returns the names in the order of the frames, or the error.
 Names sorted(Names names) {

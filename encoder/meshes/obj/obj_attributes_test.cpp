@@ -8,6 +8,7 @@
 
 #include "encoder/meshes/materials/material_files.h"
 #include "encoder/meshes/obj/obj_reader.h"
+#include "encoder/testing/obj_errors.h"
 
 namespace rlpc {
 namespace {
@@ -19,12 +20,6 @@ SingleMesh mesh_of(const std::string& text) {
   auto mesh = parse_obj(text, "a.obj");
   EXPECT_TRUE(mesh) << mesh.error().message;
   return mesh ? std::move(*mesh) : SingleMesh{};
-}
-
-void expect_error(const std::string& text, const std::string& part) {
-  const auto mesh = parse_obj(text, "a.obj");
-  ASSERT_FALSE(mesh) << text;
-  EXPECT_NE(mesh.error().message.find(part), std::string::npos) << mesh.error().message;
 }
 
 const SourceAttribute* find(const SingleMesh& mesh, const std::string& name) {
@@ -98,19 +93,19 @@ TEST(ObjAttributes, MissingCornersGetUsualValues) {
 }
 
 TEST(ObjAttributes, IndicesOutOfRangeAreNamed) {
-  expect_error(kVertices + "vt 0 0\nf 1/1 2/2 3/1\n",
-               "a.obj:6: texture coordinate index 2 is out of range 1 to 1");
+  expect_obj_error(kVertices + "vt 0 0\nf 1/1 2/2 3/1\n",
+                   "a.obj:6: texture coordinate index 2 is out of range 1 to 1");
   const SingleMesh none = mesh_of(kVertices + "f 1/1/1 2/1/2 3/1/2\n");
   EXPECT_TRUE(none.attributes.sets.empty());
   EXPECT_EQ(none.notes,
             (std::vector<std::string>{
                 "ignores each texture coordinate index, as the file has none of these",
                 "ignores each normal index, as the file has none of these"}));
-  expect_error(kVertices + "vn 0 0 1\nf 1//1 2//0 3//1\n", "a.obj:6: normal index 0;");
-  expect_error(kVertices + "vn 0 0 1\nf 1//1 2//-2 3//1\n",
-               "a.obj:6: normal index -2, but only 1 come before it");
-  expect_error(kVertices + "vt 0 nan\n", "a.obj:5:");
-  expect_error(kVertices + "vn 0 0\n", "a.obj:5: a normal needs three coordinates");
+  expect_obj_error(kVertices + "vn 0 0 1\nf 1//1 2//0 3//1\n", "a.obj:6: normal index 0;");
+  expect_obj_error(kVertices + "vn 0 0 1\nf 1//1 2//-2 3//1\n",
+                   "a.obj:6: normal index -2, but only 1 come before it");
+  expect_obj_error(kVertices + "vt 0 nan\n", "a.obj:5:");
+  expect_obj_error(kVertices + "vn 0 0\n", "a.obj:5: a normal needs three coordinates");
   MeshLimit positions_only;
   positions_only.with_attributes = false;
   const auto mesh = parse_obj(kVertices + "vt x\nf 1/9 2//0 3/1/1\n", "a.obj", positions_only);

@@ -9,20 +9,12 @@
 
 #include "encoder/meshes/off/off_reader.h"
 #include "encoder/meshes/ply/ply_reader.h"
+#include "encoder/testing/obj_errors.h"
 
 namespace rlpc {
 namespace {
 
 const std::string kThreeVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-
-std::string error_of(const std::string& text) {
-  const auto mesh = parse_obj(text, "a.obj");
-  return mesh ? "no error" : mesh.error().message;
-}
-
-void expect_error(const std::string& text, const std::string& part) {
-  EXPECT_NE(error_of(text).find(part), std::string::npos) << text << "\n" << error_of(text);
-}
 
 std::vector<Triangle> triangles_of(const std::string& text) {
   const auto mesh = parse_obj(text, "a.obj");
@@ -70,13 +62,13 @@ TEST(ObjReader, IgnoresOtherKeywords) {
 TEST(ObjReader, JoinsContinuedLines) {
   EXPECT_EQ(triangles_of("v 0 0 \\\n0\nv 1 0 0\r\nv 0 1 0\nf 1 \\\r\n 2\\\n 3"),
             (std::vector<Triangle>{{0, 1, 2}}));
-  expect_error("v 0 0 \\\n0\nv 1 0 x\n",
-               "a.obj:3: \"x\"");  // a joined line counts as two lines
+  expect_obj_error("v 0 0 \\\n0\nv 1 0 x\n",
+                   "a.obj:3: \"x\"");  // a joined line counts as two lines
 }
 
 TEST(ObjReader, AcceptsCarriageReturnsAsLineEnds) {
   EXPECT_EQ(triangles_of("v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r").size(), 1U);
-  expect_error("v 0 0 0\rv 1 0\r", "a.obj:2: a vertex needs three coordinates");
+  expect_obj_error("v 0 0 0\rv 1 0\r", "a.obj:2: a vertex needs three coordinates");
 }
 
 TEST(ObjReader, RoundsNumbersCorrectly) {
@@ -102,46 +94,47 @@ TEST(ObjReader, KeepsWhatFloatsLeaveOfNumbers) {
 }
 
 TEST(ObjReader, RefusesNonFiniteNumbers) {
-  expect_error("v 0 0 0\nv 0 nan 0\n", "a.obj:2: \"nan\" is not finite");
-  expect_error("v inf 0 0\n", "a.obj:1: \"inf\" is not finite");
-  expect_error("v 0 -infinity 0\n", "a.obj:1: \"-infinity\" is not finite");
-  expect_error("v 0 0 1e39\n", "a.obj:1: \"1e39\" is too large");
-  expect_error("v 0 0 -1e400\n", "a.obj:1: \"-1e400\" is too large");
+  expect_obj_error("v 0 0 0\nv 0 nan 0\n", "a.obj:2: \"nan\" is not finite");
+  expect_obj_error("v inf 0 0\n", "a.obj:1: \"inf\" is not finite");
+  expect_obj_error("v 0 -infinity 0\n", "a.obj:1: \"-infinity\" is not finite");
+  expect_obj_error("v 0 0 1e39\n", "a.obj:1: \"1e39\" is too large");
+  expect_obj_error("v 0 0 -1e400\n", "a.obj:1: \"-1e400\" is too large");
 }
 
 TEST(ObjReader, RefusesInvalidNumbers) {
-  expect_error("v 0 0 abc\n", "a.obj:1: \"abc\" is not a number");
-  expect_error("v 0 0 0x10\n", "\"0x10\" is not a number");
-  expect_error("v 0 0 1.5.2\n", "\"1.5.2\" is not a number");
-  expect_error("v 0 0 +\n", "\"+\" is not a number");
-  expect_error("v 0 0 1,5\n", "\"1,5\" is not a number");
-  expect_error("\n\nv 0 0\n", "a.obj:3: a vertex needs three coordinates");
+  expect_obj_error("v 0 0 abc\n", "a.obj:1: \"abc\" is not a number");
+  expect_obj_error("v 0 0 0x10\n", "\"0x10\" is not a number");
+  expect_obj_error("v 0 0 1.5.2\n", "\"1.5.2\" is not a number");
+  expect_obj_error("v 0 0 +\n", "\"+\" is not a number");
+  expect_obj_error("v 0 0 1,5\n", "\"1,5\" is not a number");
+  expect_obj_error("\n\nv 0 0\n", "a.obj:3: a vertex needs three coordinates");
 }
 
 TEST(ObjReader, RefusesIndicesOutOfRange) {
-  expect_error(kThreeVertices + "f 1 2 9\n", "a.obj:4: vertex index 9 is out of range 1 to 3");
-  expect_error(kThreeVertices + "f 1 2 9\nf 1 2 7\n", "a.obj:4: vertex index 9");
-  expect_error(kThreeVertices + "f 0 1 2\n", "a.obj:4: vertex index 0");
-  expect_error(kThreeVertices + "f 1 2 -4\n", "a.obj:4: vertex index -4, but only 3");
-  expect_error(kThreeVertices + "f 1 2 4294967296\n", "a.obj:4: vertex index 4294967296");
-  expect_error(kThreeVertices + "f 1 2 99999999999999999999\n", "is not a face corner");
+  expect_obj_error(kThreeVertices + "f 1 2 9\n",
+                   "a.obj:4: vertex index 9 is out of range 1 to 3");
+  expect_obj_error(kThreeVertices + "f 1 2 9\nf 1 2 7\n", "a.obj:4: vertex index 9");
+  expect_obj_error(kThreeVertices + "f 0 1 2\n", "a.obj:4: vertex index 0");
+  expect_obj_error(kThreeVertices + "f 1 2 -4\n", "a.obj:4: vertex index -4, but only 3");
+  expect_obj_error(kThreeVertices + "f 1 2 4294967296\n", "a.obj:4: vertex index 4294967296");
+  expect_obj_error(kThreeVertices + "f 1 2 99999999999999999999\n", "is not a face corner");
 }
 
 TEST(ObjReader, RefusesBrokenFaces) {
-  expect_error(kThreeVertices + "f 1 2\n", "a.obj:4: a face of 2 corners");
-  expect_error(kThreeVertices + "f\n", "a.obj:4: a face of 0 corners");
+  expect_obj_error(kThreeVertices + "f 1 2\n", "a.obj:4: a face of 2 corners");
+  expect_obj_error(kThreeVertices + "f\n", "a.obj:4: a face of 0 corners");
   for (const char* corner : {"3/", "3//", "3/1/", "3/x", "x", "3.0", "3/1/1/1", "/1"}) {
-    expect_error(kThreeVertices + "f 1 2 " + corner + "\n", "is not a face corner");
+    expect_obj_error(kThreeVertices + "f 1 2 " + corner + "\n", "is not a face corner");
   }
 }
 
 TEST(ObjReader, RefusesBinaryFiles) {
-  expect_error(std::string("v 0 0 0\n\0\1", 10), "a zero byte at byte 8");
-  expect_error(
+  expect_obj_error(std::string("v 0 0 0\n\0\1", 10), "a zero byte at byte 8");
+  expect_obj_error(
       "\x7F"
       "ELF\x02\x01 garbage",
       "no vertex");
-  expect_error("# only a comment\n", "no vertex");
+  expect_obj_error("# only a comment\n", "no vertex");
 }
 
 TEST(ObjReader, RefusesMissingAndEmptyFiles) {

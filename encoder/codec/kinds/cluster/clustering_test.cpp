@@ -13,7 +13,7 @@
 namespace rlpc {
 namespace {
 
-constexpr int kPositionBits = 20;
+constexpr int kSceneBits = 20;  // position_bits
 
 using Point = std::array<double, 3>;
 
@@ -82,13 +82,13 @@ void expect_boxes_apart(const Clustering& clustering) {
 
 TEST(MotionClusters, SeparateTwoBoxesThatMoveApart) {
   const Scene scene = two_boxes();
-  MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+  MotionClusters motion(scene.frames, scene.triangles, kSceneBits);
   expect_boxes_apart(motion.clusters(2));
 }
 
 TEST(MotionClusters, SeparateTwoBoxesWithSpreadSeeds) {
   const Scene scene = two_boxes();
-  MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+  MotionClusters motion(scene.frames, scene.triangles, kSceneBits);
   const Clustering clustering = motion.spread_clusters(2);
   expect_boxes_apart(clustering);
   for (const Seed& s : clustering.seeds) {
@@ -98,7 +98,7 @@ TEST(MotionClusters, SeparateTwoBoxesWithSpreadSeeds) {
 
 TEST(MotionClusters, SeedsAreMeshTrianglesRotatedToTheirLongestEdge) {
   const Scene scene = two_boxes();
-  MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+  MotionClusters motion(scene.frames, scene.triangles, kSceneBits);
   for (const Seed& s : motion.clusters(6).seeds) {
     const std::array<Triangle, 3> turns{Triangle{s[0], s[1], s[2]}, Triangle{s[1], s[2], s[0]},
                                         Triangle{s[2], s[0], s[1]}};
@@ -124,7 +124,7 @@ TEST(MotionClusters, SeedsMayBeTheFirstTriangles) {
   SeedRules rules;
   rules.first = true;
   for (int i = 0; i < 2; ++i) {
-    MotionClusters motion(scene.frames, scene.triangles, kPositionBits, rules);
+    MotionClusters motion(scene.frames, scene.triangles, kSceneBits, rules);
     const Clustering clustering = motion.clusters(2);
     ASSERT_EQ(clustering.seeds.size(), 2U);
     // The farthest vertices are met by these triangles first, whichever comes first.
@@ -163,7 +163,7 @@ TEST(MotionClusters, PlainSumsForgiveOneGreatMotion) {
   for (const DistanceSum sum : {DistanceSum::kSquared, DistanceSum::kPlain}) {
     SeedRules rules;
     rules.sum = sum;
-    MotionClusters motion(scene.frames, scene.triangles, kPositionBits, rules);
+    MotionClusters motion(scene.frames, scene.triangles, kSceneBits, rules);
     const Clustering clustering = motion.clusters(2);
     ASSERT_EQ(clustering.seeds.size(), 2U);
     const std::uint16_t first = clustering.cluster_of_vertex[0];
@@ -174,7 +174,7 @@ TEST(MotionClusters, PlainSumsForgiveOneGreatMotion) {
 TEST(MotionClusters, SeedsOfAPointCloudAreNearbyPoints) {
   Scene scene = two_boxes();
   scene.triangles.clear();
-  MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+  MotionClusters motion(scene.frames, scene.triangles, kSceneBits);
   const Clustering clustering = motion.clusters(2);
   expect_boxes_apart(clustering);
   for (const Seed& s : clustering.seeds) {
@@ -190,7 +190,7 @@ TEST(MotionClusters, CollinearOrCoincidentPointsGiveNoSeeds) {
     points.reserve(9);
     for (int i = 0; i < 9; ++i) points.push_back({step * i, 0, 0});
     scene.add_frame(points);
-    MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+    MotionClusters motion(scene.frames, scene.triangles, kSceneBits);
     for (const bool spread : {false, true}) {
       const Clustering clustering = spread ? motion.spread_clusters(3) : motion.clusters(3);
       EXPECT_TRUE(clustering.seeds.empty()) << step;
@@ -202,7 +202,7 @@ TEST(MotionClusters, CollinearOrCoincidentPointsGiveNoSeeds) {
 TEST(MotionClusters, IsolatedVerticesOfAMeshGiveNoSeeds) {
   Scene scene = two_boxes();
   scene.triangles.resize(scene.triangles.size() / 2);  // the triangles of the first box
-  MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+  MotionClusters motion(scene.frames, scene.triangles, kSceneBits);
   for (const Seed& s : motion.clusters(8).seeds) {
     for (const std::uint32_t v : s) EXPECT_LT(v, 8U);
   }
@@ -228,7 +228,7 @@ Scene strip(int columns, const std::vector<double>& heights) {
 
 TEST(MotionClusters, SeedsAreFarApart) {
   const Scene scene = strip(33, {0, 0});
-  MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+  MotionClusters motion(scene.frames, scene.triangles, kSceneBits);
   const Clustering clustering = motion.clusters(5);
   ASSERT_EQ(clustering.seeds.size(), 5U);
   std::vector<std::uint32_t> columns;
@@ -244,10 +244,10 @@ TEST(MotionClusters, SeedsAreFarApart) {
 
 TEST(MotionClusters, SeedsOfFewerClustersAreAPrefix) {
   const Scene scene = two_boxes();
-  MotionClusters once(scene.frames, scene.triangles, kPositionBits);
+  MotionClusters once(scene.frames, scene.triangles, kSceneBits);
   const std::vector<Seed> eight = once.clusters(8).seeds;
   for (const std::uint32_t count : {1U, 3U, 8U, 2U}) {
-    MotionClusters other(scene.frames, scene.triangles, kPositionBits);
+    MotionClusters other(scene.frames, scene.triangles, kSceneBits);
     const Clustering a = once.clusters(count);  // one object handles all counts
     const Clustering b = other.clusters(count);
     EXPECT_EQ(a.seeds, b.seeds);
@@ -258,7 +258,7 @@ TEST(MotionClusters, SeedsOfFewerClustersAreAPrefix) {
 
 TEST(MotionClusters, TiesGoToTheFirstSeed) {
   const Scene scene = strip(9, {0, 50, 20});  // moves as a whole
-  MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+  MotionClusters motion(scene.frames, scene.triangles, kSceneBits);
   const Clustering clustering = motion.clusters(4);
   EXPECT_EQ(clustering.seeds.size(), 4U);
   EXPECT_EQ(clustering.cluster_of_vertex, std::vector<std::uint16_t>(18, 0));
@@ -279,7 +279,7 @@ TEST(MotionClusters, TrianglesDegenerateInAnyFrameAreNoSeeds) {
       set(end + 2, {x, kind == 1 ? 70.0 : 0.0, kind == 2 ? 0.25 : 0.0});
       set(end + 3, {x, kind == 1 ? 80.0 : 0.0, 0});
     }
-    MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+    MotionClusters motion(scene.frames, scene.triangles, kSceneBits);
     const Clustering clustering = motion.clusters(100);
     EXPECT_GE(clustering.seeds.size(), 2U) << kind;
     EXPECT_LT(clustering.seeds.size(), 18U) << kind;
@@ -293,7 +293,7 @@ TEST(MotionClusters, TrianglesDegenerateInAnyFrameAreNoSeeds) {
 TEST(MotionClusters, HaveNoSeedsIfAllVerticesCoincide) {
   Scene scene = strip(4, {});
   scene.add_frame(std::vector<Point>(8, Point{5, 5, 5}));
-  MotionClusters motion(scene.frames, scene.triangles, kPositionBits);
+  MotionClusters motion(scene.frames, scene.triangles, kSceneBits);
   EXPECT_TRUE(motion.clusters(2).seeds.empty());
 }
 

@@ -11,7 +11,7 @@
 namespace rlpc {
 namespace {
 
-constexpr int kPositionBits = 20;
+constexpr int kSheetBits = 20;  // position_bits
 constexpr std::array kMethods{PartitionMethod::kKway, PartitionMethod::kLloyd,
                               PartitionMethod::kSpectral, PartitionMethod::kMotion};
 constexpr std::uint32_t kColumns = 12;
@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(All, EachMethod, testing::ValuesIn(kMethods));
 
 TEST_P(EachMethod, HasSeedsWithinTheParts) {
   const Sheets scene = sheets(3, false);
-  PartitionClusters maker(GetParam(), scene.frames, scene.triangles, kPositionBits);
+  PartitionClusters maker(GetParam(), scene.frames, scene.triangles, kSheetBits);
   for (const bool spread : {false, true}) {
     const Clustering clustering = spread ? maker.spread_clusters(3) : maker.clusters(3);
     ASSERT_EQ(clustering.seeds.size(), 3U);
@@ -69,8 +69,7 @@ TEST_P(EachMethod, HasSeedsWithinTheParts) {
 
 TEST(PartitionClusters, HaveSeedTrianglesNearTheCentreOrDistantVertices) {
   const Sheets scene = sheets(1, false);
-  PartitionClusters maker(PartitionMethod::kLloyd, scene.frames, scene.triangles,
-                          kPositionBits);
+  PartitionClusters maker(PartitionMethod::kLloyd, scene.frames, scene.triangles, kSheetBits);
   const Seed triangle = maker.clusters(1).seeds.at(0);
   for (const std::uint32_t v : triangle) {
     const std::uint32_t row = v / kColumns;
@@ -84,8 +83,7 @@ TEST(PartitionClusters, HaveSeedTrianglesNearTheCentreOrDistantVertices) {
 
 TEST(PartitionClusters, PutThoseWithoutASeedLast) {
   const Sheets scene = sheets(4, true);
-  PartitionClusters maker(PartitionMethod::kLloyd, scene.frames, scene.triangles,
-                          kPositionBits);
+  PartitionClusters maker(PartitionMethod::kLloyd, scene.frames, scene.triangles, kSheetBits);
   for (const bool spread : {false, true}) {
     const Clustering clustering = spread ? maker.spread_clusters(4) : maker.clusters(4);
     ASSERT_EQ(clustering.seeds.size(), 2U);
@@ -103,10 +101,9 @@ TEST(PartitionClusters, PutThoseWithoutASeedLast) {
 
 TEST(PartitionClusters, GiveTheSamePartsAgain) {
   const Sheets scene = sheets(2, false);
-  PartitionClusters once(PartitionMethod::kKway, scene.frames, scene.triangles, kPositionBits);
+  PartitionClusters once(PartitionMethod::kKway, scene.frames, scene.triangles, kSheetBits);
   for (const std::uint32_t count : {5U, 2U, 5U}) {
-    PartitionClusters other(PartitionMethod::kKway, scene.frames, scene.triangles,
-                            kPositionBits);
+    PartitionClusters other(PartitionMethod::kKway, scene.frames, scene.triangles, kSheetBits);
     const Clustering a = once.clusters(count);
     const Clustering b = other.clusters(count);
     EXPECT_EQ(a.seeds, b.seeds);
@@ -116,7 +113,7 @@ TEST(PartitionClusters, GiveTheSamePartsAgain) {
 
 TEST(PartitionClusters, OfOneVertex) {
   const SpanFrames frames{1, 2, {0, 0, 0, 1, 1, 1}};
-  PartitionClusters maker(PartitionMethod::kMotion, frames, {}, kPositionBits);
+  PartitionClusters maker(PartitionMethod::kMotion, frames, {}, kSheetBits);
   const Clustering clustering = maker.spread_clusters(8);
   EXPECT_TRUE(clustering.seeds.empty());
   EXPECT_EQ(clustering.num_clusters(), 1U);

@@ -109,7 +109,7 @@ double rms_error(const SpanFrames& frames, const Rig& fit) {
   return std::sqrt(sum / (static_cast<double>(frames.num_frames) * frames.num_vertices));
 }
 
-double distance(const Point& a, const Point& b) {
+double distance_of_points(const Point& a, const Point& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
@@ -140,7 +140,9 @@ void expect_well_formed(const Animation& a, const Options& options, const Rig& f
         EXPECT_GE(p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3], 0.0);
       }
       if (!bone.pinned) continue;
-      EXPECT_LT(distance(bone.poses[f].origin, carried(fit, bone.parent, f, bone.pivot)), 1e-6);
+      EXPECT_LT(
+          distance_of_points(bone.poses[f].origin, carried(fit, bone.parent, f, bone.pivot)),
+          1e-6);
     }
   }
   for (const auto& weights : fit.weights) {

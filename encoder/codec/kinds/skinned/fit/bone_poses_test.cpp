@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
 #include <vector>
 
 #include "encoder/testing/random_points.h"
+#include "encoder/testing/rigid.h"
 
 namespace rlpc {
 namespace {
@@ -82,16 +82,7 @@ Skin beam(std::size_t num_bones, RandomPoints& random) {
   return skin;
 }
 
-void expect_rigid(const std::vector<Motion>& motions) {
-  for (const Motion& m : motions) {
-    const Eigen::Matrix3d r = m.leftCols<3>();
-    EXPECT_LT((r * r.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12) << m;
-    EXPECT_NEAR(r.determinant(), 1.0, 1e-12);
-    EXPECT_TRUE(m.allFinite());
-  }
-}
-
-double distance(const std::vector<Motion>& a, const std::vector<Motion>& b) {
+double distance_of_motions(const std::vector<Motion>& a, const std::vector<Motion>& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
   return std::sqrt(sum);
@@ -228,10 +219,10 @@ TEST(SolvePoses, IsAGaussNewtonStep) {
     motions.reserve(3);
     for (int b = 0; b < 3; ++b) motions.push_back(random.motion(0.2));
     const std::vector<Motion> expected = step_by_differences(skin, motions);
-    const double length = distance(expected, motions);
+    const double length = distance_of_motions(expected, motions);
     skin.solve(motions);
     expect_rigid(motions);
-    EXPECT_LT(distance(motions, expected), 0.02 * length) << i;
+    EXPECT_LT(distance_of_motions(motions, expected), 0.02 * length) << i;
   }
 }
 
@@ -256,10 +247,10 @@ TEST(SolvePoses, FindsTheMotionsOfBlendedBones) {
       expect_rigid(motions);
       EXPECT_LT(skin.error(motions), 0.1 * before + 1e-20) << num_bones << ' ' << step;
     }
-    EXPECT_LT(distance(motions, truth), 1e-6) << num_bones;
+    EXPECT_LT(distance_of_motions(motions, truth), 1e-6) << num_bones;
     const std::vector<Motion> there = motions;
     skin.solve(motions);
-    EXPECT_LT(distance(motions, there), 1e-6);
+    EXPECT_LT(distance_of_motions(motions, there), 1e-6);
   }
 }
 

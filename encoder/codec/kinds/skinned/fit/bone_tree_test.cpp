@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -10,11 +9,12 @@
 #include <vector>
 
 #include "encoder/testing/random_points.h"
+#include "encoder/testing/rigid.h"
 
 namespace rlpc {
 namespace {
 
-constexpr std::size_t kFrames = 12;
+constexpr std::size_t kChainFrames = 12;
 constexpr double kAlways = std::numeric_limits<double>::infinity();
 constexpr double kNever = -1.0;
 
@@ -55,7 +55,7 @@ struct Chain {
     }
     std::vector<Vec3d> phase;
     for (std::size_t l = 0; l < links(); ++l) phase.push_back(3.0 * random.point());
-    for (std::size_t f = 0; f < kFrames; ++f) {
+    for (std::size_t f = 0; f < kChainFrames; ++f) {
       Motion m = turn_about({0, 0, 0}, 0.1 * static_cast<double>(f) * Vec3d(1, 2, 0));
       m.col(3) += Vec3d(0, 3.0 * static_cast<double>(f), 0);
       for (std::size_t l = 0; l < links(); ++l) {
@@ -85,7 +85,7 @@ struct Chain {
   // Returns squared distances between the vertices of a bone under other motions and its own.
   double damage(std::size_t bone, const std::vector<Motion>& other) const {
     double sum = 0.0;
-    for (std::size_t f = 0; f < kFrames; ++f) {
+    for (std::size_t f = 0; f < kChainFrames; ++f) {
       for (const Vec3d& p : rest[bone]) {
         sum += (moved(other[f], p) - moved(motions[bone][f], p)).squaredNorm();
       }
@@ -106,17 +106,6 @@ void expect_tree(const std::vector<TreeBone>& tree, std::size_t num_bones) {
   std::sort(bones.begin(), bones.end());
   for (std::size_t b = 0; b < num_bones; ++b) EXPECT_EQ(bones[b], b);
   EXPECT_FALSE(tree[0].pinned);
-}
-
-void expect_rigid(const Motions& motions) {
-  for (const auto& bone : motions) {
-    for (const Motion& m : bone) {
-      const Eigen::Matrix3d r = m.leftCols<3>();
-      EXPECT_LT((r * r.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12) << m;
-      EXPECT_NEAR(r.determinant(), 1.0, 1e-12);
-      EXPECT_TRUE(m.allFinite());
-    }
-  }
 }
 
 TEST(BoneTree, PutsThePivotOfASingleBoneAtItsCentre) {
@@ -180,7 +169,7 @@ TEST(BoneTree, WeighsGapsAgainstRotation) {
   for (const bool far : {false, true}) {
     Chain chain({0, 1, 2}, 0.5, 0.0);
     const Vec3d joint = far ? Chain::joint(2) : Chain::joint(1);
-    for (std::size_t f = 0; f < kFrames; ++f) {
+    for (std::size_t f = 0; f < kChainFrames; ++f) {
       Motion& middle = chain.motions[1][f];
       if (!far) middle.col(3) += Vec3d(0, 0, f % 2 == 0 ? 0.01 : -0.01);
       Motion& last = chain.motions[2][f];
@@ -223,11 +212,11 @@ TEST(BoneTree, PinsBonesWithTheLeastDamage) {
   Motions motions = chain.motions;
   const auto tree = build_bone_tree(chain.moments(), kAlways, motions);
   expect_tree(tree, 2);
-  expect_rigid(motions);
+  for (const auto& bone : motions) expect_rigid(bone);
   ASSERT_TRUE(tree[1].pinned);
   EXPECT_EQ(motions[0], chain.motions[0]);
   const Vec3d& pivot = tree[1].pivot;
-  for (std::size_t f = 0; f < kFrames; ++f) {
+  for (std::size_t f = 0; f < kChainFrames; ++f) {
     EXPECT_LT((moved(motions[0][f], pivot) - moved(motions[1][f], pivot)).norm(), 1e-10);
   }
   const double damage = chain.damage(1, motions[1]);
@@ -256,11 +245,11 @@ TEST(BoneTree, PinsBonesToPinnedBones) {
   Motions motions = chain.motions;
   const auto tree = build_bone_tree(chain.moments(), kAlways, motions);
   expect_tree(tree, 4);
-  expect_rigid(motions);
+  for (const auto& bone : motions) expect_rigid(bone);
   for (std::size_t i = 1; i < 4; ++i) {
     EXPECT_TRUE(tree[i].pinned);
     const auto& parent = motions[tree[static_cast<std::size_t>(tree[i].parent)].bone];
-    for (std::size_t f = 0; f < kFrames; ++f) {
+    for (std::size_t f = 0; f < kChainFrames; ++f) {
       EXPECT_LT(
           (moved(parent[f], tree[i].pivot) - moved(motions[tree[i].bone][f], tree[i].pivot))
               .norm(),
@@ -282,7 +271,7 @@ TEST(BoneTree, AcceptsDegenerateBones) {
     for (const double pin_error : {0.0, kAlways}) {
       Motions motions = chain.motions;
       expect_tree(build_bone_tree(chain.moments(), pin_error, motions), 4);
-      expect_rigid(motions);
+      for (const auto& bone : motions) expect_rigid(bone);
       if (!still) continue;
       for (std::size_t b = 0; b < 4; ++b) EXPECT_LT(chain.damage(b, motions[b]), 1e-9) << b;
     }

@@ -8,9 +8,9 @@
 namespace rlpc {
 namespace {
 
-constexpr int kFrames = 10;
-constexpr int kMovedFrames = 2 * (kFrames / 2);  // of two vertices, every second frame
-constexpr double kLever = 100.0;                 // distance of the vertices from the pivot
+constexpr int kRigFrames = 10;
+constexpr int kMovedFrames = 2 * (kRigFrames / 2);  // of two vertices, every second frame
+constexpr double kLever = 100.0;                    // distance of the vertices from the pivot
 
 // Bone 1 turns by `angle` relative to bone 0 in every second frame, and leaves it by `gap`.
 Rig two_bones(double gap, double angle) {
@@ -18,7 +18,7 @@ Rig two_bones(double gap, double angle) {
   rig.bones.resize(2);
   rig.bones[1].parent = 0;
   rig.bones[1].pivot = {1000.0, 0.0, 0.0};
-  for (int f = 0; f < kFrames; ++f) {
+  for (int f = 0; f < kRigFrames; ++f) {
     rig.bones[0].poses.push_back({{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 5.0 * f}});
     const double half = f % 2 == 0 ? 0.0 : 0.5 * angle;
     rig.bones[1].poses.push_back({{std::cos(half), 0.0, 0.0, std::sin(half)},

@@ -10,20 +10,16 @@
 #include <vector>
 
 #include "encoder/testing/random_points.h"
+#include "encoder/testing/rigid.h"
 
 namespace rlpc {
 namespace {
 
 const double kHalf = std::sqrt(0.5);
 
-Eigen::Matrix3d turn_about(const Vec3d& axis, double angle) {
+Eigen::Matrix3d rotation_about(const Vec3d& axis, double angle) {
   const Vec3d v = std::sin(0.5 * angle) * axis.normalized();
   return rotation_matrix({std::cos(0.5 * angle), v(0), v(1), v(2)});
-}
-
-void expect_rotation(const Eigen::Matrix3d& r) {
-  EXPECT_LT((r * r.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12) << r;
-  EXPECT_NEAR(r.determinant(), 1.0, 1e-12);
 }
 
 void expect_quaternion(const UnitQuaternion& found, const UnitQuaternion& expected,
@@ -126,7 +122,7 @@ TEST(ClosestRotation, IsTheNearestRotationFromAnyStart) {
   for (int i = 0; i < 200; ++i) {
     const Eigen::Matrix3d start = random.rotation();
     constexpr double kAngles[] = {0.05, 0.1, 0.5, 1.0, 3.0};
-    const Eigen::Matrix3d goal = turn_about(random.point(), kAngles[i % 5]) * start;
+    const Eigen::Matrix3d goal = rotation_about(random.point(), kAngles[i % 5]) * start;
     Eigen::Matrix3d spread = random.matrix();
     spread = spread * spread.transpose() + 0.2 * Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d h = goal * spread;  // its nearest rotation is `goal`
@@ -209,7 +205,7 @@ TEST(MotionFit, HasTheLeastSquaredError) {
     for (int k = 0; k < 100; ++k) {
       const double size = k % 2 == 0 ? 0.01 : 1.0;
       Motion other = best;
-      other.leftCols<3>() = turn_about(random.point(), size) * best.leftCols<3>();
+      other.leftCols<3>() = rotation_about(random.point(), size) * best.leftCols<3>();
       EXPECT_GE(squared_error(other, pairs), min - 1e-12);
       other.col(3) += size * random.point();
       EXPECT_GE(squared_error(other, pairs), min - 1e-12);

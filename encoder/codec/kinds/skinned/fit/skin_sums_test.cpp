@@ -9,7 +9,7 @@ namespace rlpc {
 namespace {
 
 constexpr std::size_t kVertices = 9;
-constexpr std::size_t kFrames = 7;
+constexpr std::size_t kSumFrames = 7;
 
 class Random {
  public:
@@ -18,13 +18,13 @@ class Random {
   Vec3d point() { return {value(), value(), value()}; }
   std::vector<Vec3d> positions() {
     std::vector<Vec3d> result;
-    for (std::size_t i = 0; i < kVertices * kFrames; ++i) result.push_back(point());
+    for (std::size_t i = 0; i < kVertices * kSumFrames; ++i) result.push_back(point());
     return result;
   }
   BoneMotions motions(std::size_t count) {
     BoneMotions result(count);
     for (auto& bone : result) {
-      for (std::size_t f = 0; f < kFrames; ++f) {
+      for (std::size_t f = 0; f < kSumFrames; ++f) {
         Motion m;
         m.leftCols<3>() = rotation_matrix(normalised({2.5, value(), value(), value()}));
         m.col(3) = point();
@@ -59,8 +59,8 @@ TEST(SkinSums, GiveTheErrorsOfVertices) {
   for (std::size_t v = 0; v < kVertices; ++v) {
     for (std::size_t b = 0; b < motions.size(); ++b) {
       double error = 0.0;
-      for (std::size_t f = 0; f < kFrames; ++f) {
-        error += (moved(motions[b][f], rest) - positions[v * kFrames + f]).squaredNorm();
+      for (std::size_t f = 0; f < kSumFrames; ++f) {
+        error += (moved(motions[b][f], rest) - positions[v * kSumFrames + f]).squaredNorm();
       }
       EXPECT_NEAR(sums.rigid_error(v, b, rest), error, 1e-9);
     }

@@ -113,9 +113,9 @@ void expect_valid(const Rig& rig, const SpanFrames& frames) {
 void expect_honest(const RecoveredRig& found, const SpanFrames& frames) {
   expect_valid(found.rig, frames);
   const std::vector<double> errors = errors_of(frames, found.rig);
-  constexpr double kExact = 1e-4;  // extents
-  EXPECT_GE(found.explained, part_below(errors, 0.8 * kExact) - 0.01);
-  EXPECT_LE(found.explained, part_below(errors, 1.2 * kExact) + 0.01);
+  constexpr double kExplainedError = 1e-4;  // extents
+  EXPECT_GE(found.explained, part_below(errors, 0.8 * kExplainedError) - 0.01);
+  EXPECT_LE(found.explained, part_below(errors, 1.2 * kExplainedError) + 0.01);
 }
 
 TEST(RecoveredRig, MovesEachVertexOfALimb) {
