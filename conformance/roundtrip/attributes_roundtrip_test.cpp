@@ -17,6 +17,7 @@
 #include "common/codec/bits/bit_reader.h"
 #include "common/codec/bits/crc32.h"
 #include "common/codec/mesh/corners.h"
+#include "common/testing/triangle_mesh.h"
 #include "decoder/codec/parse/attributes/parse_attributes.h"
 #include "encoder/codec/attributes/corner_map.h"
 #include "encoder/codec/attributes/encode_attributes.h"
@@ -28,11 +29,6 @@ namespace rlpc {
 namespace {
 
 constexpr MemoryLimit kNoLimit{std::uint64_t{1} << 40, 0};
-
-struct Mesh {
-  std::uint32_t num_vertices = 0;
-  std::vector<Triangle> triangles;
-};
 
 class Draw {
  public:
@@ -53,11 +49,11 @@ class Draw {
 
 // Returns a grid, perhaps closed to a torus, with some triangles turned, left out or without
 // area, and some of random vertices.
-Mesh random_mesh(Draw& draw) {
+TriangleMesh random_mesh(Draw& draw) {
   const std::uint32_t columns = 2 + draw.below(6);
   const std::uint32_t rows = 1 + draw.below(6);
   const std::uint32_t wrap = draw.below(2);
-  Mesh mesh;
+  TriangleMesh mesh;
   const std::uint32_t across = columns + 1 - wrap;
   const auto vertex = [&](std::uint32_t x, std::uint32_t y) { return y * across + x % across; };
   for (std::uint32_t y = 0; y < rows; ++y) {
@@ -107,7 +103,7 @@ AttributeHeader random_header(Draw& draw, std::uint32_t s) {
   return h;
 }
 
-CodedAttributeSet random_set(Draw& draw, std::uint32_t s, const Mesh& mesh,
+CodedAttributeSet random_set(Draw& draw, std::uint32_t s, const TriangleMesh& mesh,
                              const std::vector<std::uint32_t>& mates) {
   CodedAttributeSet set;
   set.header = random_header(draw, s);
@@ -143,7 +139,7 @@ CodedAttributeSet random_set(Draw& draw, std::uint32_t s, const Mesh& mesh,
 TEST(AttributesRoundtrip, ParserReadsWhatTheWriterWrites) {
   for (std::uint32_t seed = 0; seed < 300; ++seed) {
     Draw draw(seed);
-    const Mesh mesh = random_mesh(draw);
+    const TriangleMesh mesh = random_mesh(draw);
     const auto mates = find_edge_mates(mesh.num_vertices, mesh.triangles);
     CodedAttributes coded;
     for (std::uint32_t s = 1 + draw.below(5); s > 0; --s) {
@@ -169,7 +165,7 @@ TEST(AttributesRoundtrip, ParserReadsWhatTheWriterWrites) {
 TEST(AttributesRoundtrip, AnyResidualsGiveValuesWithinTheirBits) {
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
     Draw draw(seed);
-    const Mesh mesh = random_mesh(draw);
+    const TriangleMesh mesh = random_mesh(draw);
     const auto mates = find_edge_mates(mesh.num_vertices, mesh.triangles);
     CodedAttributes coded;
     coded.sets.push_back(random_set(draw, 0, mesh, mates));
@@ -187,7 +183,7 @@ TEST(AttributesRoundtrip, AnyResidualsGiveValuesWithinTheirBits) {
 
 // Values of a source, of some kind and domain; few different ones, so that sectors form.
 SourceAttribute random_source(Draw& draw, SourceAttribute::Kind kind, AttributeDomain domain,
-                              const Mesh& mesh) {
+                              const TriangleMesh& mesh) {
   SourceAttribute source;
   source.name = kind == SourceAttribute::Kind::kNormals ? "normal" : "numbers";
   source.domain = domain;
@@ -220,8 +216,8 @@ SourceAttribute random_source(Draw& draw, SourceAttribute::Kind kind, AttributeD
   return source;
 }
 
-struct Coded {
-  Mesh mesh;
+struct DecodedAttribute {
+  TriangleMesh mesh;
   ConnectivityCode connectivity;
   std::vector<std::uint32_t> corner_map;
   AttributeSet decoded;
@@ -244,9 +240,10 @@ struct Coded {
   }
 };
 
-Coded code(Draw& draw, const Mesh& mesh, const SourceAttributes& source,
-           const AttributeSettings& settings) {
-  Coded result{mesh, write_connectivity(mesh.num_vertices, mesh.triangles), {}, {}};
+DecodedAttribute decoded_attribute(Draw& draw, const TriangleMesh& mesh,
+                                   const SourceAttributes& source,
+                                   const AttributeSettings& settings) {
+  DecodedAttribute result{mesh, write_connectivity(mesh.num_vertices, mesh.triangles), {}, {}};
   result.corner_map = map_corners(result.connectivity, mesh.triangles);
   std::vector<std::int32_t> positions(3 * std::size_t{mesh.num_vertices});
   for (std::int32_t& x : positions) x = draw.residual(12);
@@ -269,8 +266,8 @@ Coded code(Draw& draw, const Mesh& mesh, const SourceAttributes& source,
 
 // Returns the indices of the values of a decoded corner in the source and in the decoded set,
 // which has values of vertices if those of their corners are the same.
-std::array<std::size_t, 2> values_of(const Coded& coded, const SourceAttribute& source,
-                                     std::uint32_t c) {
+std::array<std::size_t, 2> values_of(const DecodedAttribute& coded,
+                                     const SourceAttribute& source, std::uint32_t c) {
   const std::uint32_t input = coded.corner_map[c];
   const std::size_t from =
       source.domain == AttributeDomain::kVertex     ? coded.mesh.triangles[input / 3][input % 3]
@@ -300,14 +297,14 @@ constexpr std::array kDomains{AttributeDomain::kVertex, AttributeDomain::kCorner
 TEST(AttributesRoundtrip, ExactNumbersAndIntegersComeBack) {
   for (std::uint32_t seed = 0; seed < 120; ++seed) {
     Draw draw(seed);
-    const Mesh mesh = random_mesh(draw);
+    const TriangleMesh mesh = random_mesh(draw);
     const auto kind =
         seed % 2 == 0 ? SourceAttribute::Kind::kNumbers : SourceAttribute::Kind::kIntegers;
     SourceAttributes source;
     source.sets.push_back(random_source(draw, kind, kDomains[seed / 2 % 3], mesh));
     AttributeSettings settings;
     settings.exact = kind == SourceAttribute::Kind::kNumbers;
-    const Coded coded = code(draw, mesh, source, settings);
+    const DecodedAttribute coded = decoded_attribute(draw, mesh, source, settings);
     const SourceAttribute& in = source.sets[0];
     ASSERT_EQ(coded.decoded.header.num_components, in.num_components) << "seed " << seed;
     for (std::uint32_t c = 0; c < coded.corner_map.size(); ++c) {
@@ -324,7 +321,7 @@ TEST(AttributesRoundtrip, ExactNumbersAndIntegersComeBack) {
 TEST(AttributesRoundtrip, TextureCoordinatesAndNormalsComeNear) {
   for (std::uint32_t seed = 0; seed < 120; ++seed) {
     Draw draw(seed);
-    const Mesh mesh = random_mesh(draw);
+    const TriangleMesh mesh = random_mesh(draw);
     const bool is_normal = seed % 2 == 0;
     const AttributeDomain domain = kDomains[seed / 2 % 2];
     SourceAttributes source;
@@ -339,11 +336,12 @@ TEST(AttributesRoundtrip, TextureCoordinatesAndNormalsComeNear) {
     AttributeSettings settings;
     settings.normals = NormalChoice::kExact;
     settings.normal_bits = 12;
-    const Coded coded = code(draw, mesh, source, settings);
+    const DecodedAttribute coded = decoded_attribute(draw, mesh, source, settings);
     if (is_normal) {
       settings = {};
       settings.exact = true;
-      const AttributeHeader header = code(draw, mesh, source, settings).decoded.header;
+      const AttributeHeader header =
+          decoded_attribute(draw, mesh, source, settings).decoded.header;
       ASSERT_EQ(header.kind, ValueKind::kUnitVectors) << "seed " << seed;
       ASSERT_EQ(header.value_bits, 16U);
     }

@@ -9,6 +9,8 @@
 #include "common/codec/bits/bit_reader.h"
 #include "common/codec/bits/residual_models.h"
 #include "common/codec/kinds/cluster/recon/cluster_recon.h"
+#include "common/testing/residual_bound.h"
+#include "conformance/testing/ample_memory.h"
 #include "conformance/testing/count_memory.h"
 #include "decoder/codec/kinds/cluster/parse/parse_cluster_gof.h"
 #include "decoder/codec/parse/parse_gof_header.h"
@@ -17,7 +19,6 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint64_t kAmple = std::uint64_t{1} << 30;
 constexpr int kResidualBits = floor_log2(kMaxResidual) + 1;  // bits of a magnitude
 
 // Random legal GOFs. Fields take the ends of their ranges often.
@@ -138,7 +139,7 @@ class Generator {
 };
 
 // Compares the parts first: they show where a difference is.
-void expect_equal(const ClusterGof& a, const ClusterGof& b) {
+void expect_equal_clusters(const ClusterGof& a, const ClusterGof& b) {
   EXPECT_EQ(a.cluster_of_vertex, b.cluster_of_vertex);
   ASSERT_EQ(a.seed_tracks.size(), b.seed_tracks.size());
   for (std::size_t i = 0; i < a.seed_tracks.size(); ++i) {
@@ -151,14 +152,14 @@ void expect_equal(const ClusterGof& a, const ClusterGof& b) {
   EXPECT_TRUE(a == b);
 }
 
-void expect_round_trip(const Generator& from, const ClusterGof& gof) {
+void expect_cluster_round_trip(const Generator& from, const ClusterGof& gof) {
   const std::vector<std::uint8_t> payload = write_cluster_gof(gof, from.header, from.topology);
   BitReader r(payload);
   const GofHeader header = parse_gof_header(r, from.header, gof.first_frame);
   EXPECT_EQ(header.kind, GofKind::kCluster);
-  const auto parsed = parse_clusters(r, from.header, from.topology, header, {kAmple, 0});
+  const auto parsed = parse_clusters(r, from.header, from.topology, header, {kAmpleMemory, 0});
   ASSERT_TRUE(parsed) << parsed.error().rule << " " << parsed.error().element;
-  expect_equal(gof, *parsed);
+  expect_equal_clusters(gof, *parsed);
 
   const ClusterRecon written(from.header, from.topology, gof);
   const ClusterRecon read(from.header, from.topology, *parsed);
@@ -182,7 +183,7 @@ TEST(ClusterGofRoundTrip, RandomLegalGofsComeBackAndReconstructAlike) {
     Generator generator(seed);
     const ClusterGof gof = generator.gof(40, 8, 8);
     generator.header.profile_idc = seed % 2 == 0 ? kProfileMain : kProfileBaseline;
-    expect_round_trip(generator, gof);
+    expect_cluster_round_trip(generator, gof);
     if (testing::Test::HasFailure()) return;
   }
 }
@@ -193,7 +194,7 @@ TEST(ClusterGofRoundTrip, OneFrameAndOneVertexAreEnough) {
     Generator generator(seed);
     const ClusterGof gof = generator.gof(1, 1, 3);
     ASSERT_EQ(gof.num_frames, 1U);
-    expect_round_trip(generator, gof);
+    expect_cluster_round_trip(generator, gof);
   }
 }
 
@@ -201,7 +202,7 @@ TEST(ClusterGofRoundTrip, AsManyClustersAsTheLevelAllowsComeBack) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     Generator generator(seed);
-    expect_round_trip(generator, generator.gof(500, 3, kLevels[0].max_clusters));
+    expect_cluster_round_trip(generator, generator.gof(500, 3, kLevels[0].max_clusters));
   }
 }
 
@@ -209,7 +210,7 @@ TEST(ClusterGofRoundTrip, LongGofsOfFewVerticesComeBack) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     Generator generator(seed);
-    expect_round_trip(generator, generator.gof(6, kLevels[0].max_gof_frames, 3));
+    expect_cluster_round_trip(generator, generator.gof(6, kLevels[0].max_gof_frames, 3));
   }
 }
 
@@ -218,12 +219,11 @@ TEST(ClusterGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
   Generator generator(1);
   ClusterGof gof = generator.gof(40, 8, 1);
   while (gof.seed_tracks.empty() || gof.num_frames < 4) gof = generator.gof(40, 8, 1);
-  const auto max = static_cast<std::int32_t>(kMaxResidual);
   for (const int period : {1, 2, 7, 50}) {
     int count = 0;
     const auto next = [&] {
       ++count;
-      return count / period % 2 == 0 ? 0 : count % 2 == 0 ? max : -max;
+      return count / period % 2 == 0 ? 0 : count % 2 == 0 ? kResidualBound : -kResidualBound;
     };
     for (Vec3i& r : gof.seed_tracks[0].residual) r = {next(), next(), next()};
     gof.clusters[0].components.resize(3);
@@ -233,7 +233,7 @@ TEST(ClusterGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
       for (std::int32_t& x : c.temporal_residual) x = next();
       for (std::int32_t& x : c.spatial_residual) x = next();
     }
-    expect_round_trip(generator, gof);
+    expect_cluster_round_trip(generator, gof);
   }
 }
 
@@ -242,7 +242,7 @@ TEST(ClusterGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
 std::uint64_t estimated_memory(const Generator& from, const ClusterGof& gof,
                                const std::vector<std::uint8_t>& payload) {
   std::uint64_t too_few = 0;
-  std::uint64_t enough = kAmple;
+  std::uint64_t enough = kAmpleMemory;
   while (enough - too_few > std::max<std::uint64_t>(1, enough / 50)) {
     const std::uint64_t middle = too_few + (enough - too_few) / 2;
     BitReader r(payload);
@@ -262,7 +262,8 @@ void expect_memory_within_estimate(const Generator& from, const ClusterGof& gof)
   {
     BitReader r(payload);
     const GofHeader header = parse_gof_header(r, from.header, gof.first_frame);
-    const auto parsed = parse_clusters(r, from.header, from.topology, header, {kAmple, 0});
+    const auto parsed =
+        parse_clusters(r, from.header, from.topology, header, {kAmpleMemory, 0});
     ASSERT_TRUE(parsed);
     const ClusterRecon recon(from.header, from.topology, *parsed);
     std::vector<std::int32_t> positions(3 * std::size_t{from.header.num_vertices});

@@ -18,8 +18,6 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kAll = SliceCut::kAll;
-
 struct Coarse {
   std::uint32_t num_layers = 0;
   std::vector<std::uint32_t> vertices;
@@ -164,7 +162,8 @@ std::uint32_t check(const StreamBytes& stream, const SliceCut& cut = {}) {
   return num_cut;
 }
 
-StreamBytes encoded(Profile profile, std::uint32_t gof_frames, std::uint32_t layer_groups) {
+StreamBytes stream_with_layers(Profile profile, std::uint32_t gof_frames,
+                               std::uint32_t layer_groups) {
   MemoryFrames source = bending_tube(16, 20);
   EncoderSettings settings;
   settings.profile = profile;
@@ -181,30 +180,30 @@ TEST(CoarseDecoding, NeedsOnlyTheLayerGroupsOfItsLayers) {
   EXPECT_EQ(check(sliced_stream()), 1U) << "its second layer group begins with layer 1";
   EXPECT_EQ(check(ordered_stream()), 1U);
   EXPECT_EQ(check(mixed_stream()), 1U);
-  EXPECT_GT(check(encoded(Profile::kMain, 20, 4)), 2U);
+  EXPECT_GT(check(stream_with_layers(Profile::kMain, 20, 4)), 2U);
 }
 
 TEST(CoarseDecoding, WorksWithSharedRigsAndRestOrder) {
-  const StreamBytes stream = encoded(Profile::kHigh, 5, 4);
+  const StreamBytes stream = stream_with_layers(Profile::kHigh, 5, 4);
   EXPECT_FALSE(summary_of(stream).rigs.empty());
   EXPECT_GT(check(stream), 2U);
 }
 
 TEST(CoarseDecoding, WorksWhereNothingCanBeDropped) {
-  EXPECT_EQ(check(encoded(Profile::kBaseline, 7, 0)), 0U);
+  EXPECT_EQ(check(stream_with_layers(Profile::kBaseline, 7, 0)), 0U);
   EXPECT_EQ(check(rich_stream()), 0U);
-  EXPECT_EQ(check(encoded(Profile::kMain, 20, 1)), 0U);
+  EXPECT_EQ(check(stream_with_layers(Profile::kMain, 20, 1)), 0U);
 }
 
 TEST(CoarseDecoding, CombinesWithCuts) {
-  check(sliced_stream(), {1, kAll});
-  check(sliced_stream(), {kAll, 1});
-  const StreamBytes stream = encoded(Profile::kHigh, 5, 4);
+  check(sliced_stream(), {1, SliceCut::kAll});
+  check(sliced_stream(), {SliceCut::kAll, 1});
+  const StreamBytes stream = stream_with_layers(Profile::kHigh, 5, 4);
   for (const std::uint32_t layers : {1U, 3U}) check(stream, {2, layers});
 }
 
 TEST(CoarseDecoding, SeeksAsTheWholeMeshDoes) {
-  const StreamBytes stream = encoded(Profile::kHigh, 5, 4);
+  const StreamBytes stream = stream_with_layers(Profile::kHigh, 5, 4);
   const Coarse all = decode_coarse(stream, coarse_options(2));
   auto decoder = Decoder::open(memory_source(stream), coarse_options(2));
   ASSERT_TRUE(decoder);
@@ -218,7 +217,7 @@ TEST(CoarseDecoding, SeeksAsTheWholeMeshDoes) {
 
 TEST(CoarseDecoding, TheWholeMeshSaysHowManyLayersItHas) {
   for (const Profile profile : {Profile::kBaseline, Profile::kMain}) {
-    const StreamBytes stream = encoded(profile, 20, 0);
+    const StreamBytes stream = stream_with_layers(profile, 20, 0);
     const auto decoder = Decoder::open(memory_source(stream));
     ASSERT_TRUE(decoder);
     const Coarse coarse = decode_coarse(stream, coarse_options(1));

@@ -17,6 +17,7 @@
 
 #include "common/codec/bits/bit_reader.h"
 #include "common/codec/mesh/connectivity_models.h"
+#include "common/testing/triangle_mesh.h"
 #include "decoder/codec/parse/sequence/parse_connectivity.h"
 #include "encoder/codec/write/write_connectivity.h"
 
@@ -24,11 +25,6 @@ namespace rlpc {
 namespace {
 
 using Triangles = std::vector<Triangle>;
-
-struct Mesh {
-  std::uint32_t num_vertices = 0;
-  Triangles triangles;
-};
 
 // Returns the rotation of a triangle that starts with its smallest index.
 Triangle canonical(Triangle t) {
@@ -43,13 +39,13 @@ Triangles canonical_multiset(Triangles triangles) {
   return triangles;
 }
 
-Result<Triangles> parse(const std::vector<std::uint8_t>& payload, const Mesh& mesh) {
+Result<Triangles> parse(const std::vector<std::uint8_t>& payload, const TriangleMesh& mesh) {
   BitReader r(payload);
   return parse_connectivity(r, mesh.num_vertices,
                             static_cast<std::uint32_t>(mesh.triangles.size()));
 }
 
-ConnectivityCode expect_round_trip(const Mesh& mesh) {
+ConnectivityCode expect_connectivity_round_trip(const TriangleMesh& mesh) {
   ConnectivityCode code = write_connectivity(mesh.num_vertices, mesh.triangles);
   const auto decoded = parse(code.payload, mesh);
   EXPECT_TRUE(decoded) << (decoded ? "" : decoded.error().rule);
@@ -70,8 +66,8 @@ ConnectivityCode expect_round_trip(const Mesh& mesh) {
   return code;
 }
 
-Mesh disjoint_union(const Mesh& a, const Mesh& b) {
-  Mesh sum = a;
+TriangleMesh disjoint_union(const TriangleMesh& a, const TriangleMesh& b) {
+  TriangleMesh sum = a;
   for (Triangle t : b.triangles) {
     for (std::uint32_t& v : t) v += a.num_vertices;
     sum.triangles.push_back(t);
@@ -81,13 +77,13 @@ Mesh disjoint_union(const Mesh& a, const Mesh& b) {
 }
 
 // Merges vertex `from` into vertex `to`; `from` stays as an isolated vertex.
-void merge_vertices(Mesh& mesh, std::uint32_t from, std::uint32_t to) {
+void merge_vertices(TriangleMesh& mesh, std::uint32_t from, std::uint32_t to) {
   for (Triangle& t : mesh.triangles) std::replace(t.begin(), t.end(), from, to);
 }
 
-Mesh tetrahedron() { return {4, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}}; }
+TriangleMesh tetrahedron() { return {4, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}}; }
 
-Mesh cube() {
+TriangleMesh cube() {
   return {8,
           {{0, 2, 1},
            {0, 3, 2},
@@ -106,10 +102,10 @@ Mesh cube() {
 // A grid of nx * ny quads; wrapped in x or y if asked for; quads for which keep() is false are
 // left out.
 template <class Keep>
-Mesh grid(std::uint32_t nx, std::uint32_t ny, bool wrap_x, bool wrap_y, Keep keep) {
+TriangleMesh grid(std::uint32_t nx, std::uint32_t ny, bool wrap_x, bool wrap_y, Keep keep) {
   const std::uint32_t row = wrap_x ? nx : nx + 1;
   const std::uint32_t rows = wrap_y ? ny : ny + 1;
-  Mesh mesh{row * rows, {}};
+  TriangleMesh mesh{row * rows, {}};
   for (std::uint32_t y = 0; y < ny; ++y) {
     for (std::uint32_t x = 0; x < nx; ++x) {
       if (!keep(x, y)) continue;
@@ -126,19 +122,20 @@ Mesh grid(std::uint32_t nx, std::uint32_t ny, bool wrap_x, bool wrap_y, Keep kee
   return mesh;
 }
 
-Mesh grid(std::uint32_t nx, std::uint32_t ny, bool wrap_x = false, bool wrap_y = false) {
+TriangleMesh grid(std::uint32_t nx, std::uint32_t ny, bool wrap_x = false,
+                  bool wrap_y = false) {
   return grid(nx, ny, wrap_x, wrap_y, [](std::uint32_t, std::uint32_t) { return true; });
 }
 
 // Closed surface of the given genus: the surface of a bar of cubes with `genus` holes in a row.
-Mesh surface_of_genus(std::uint32_t genus) {
+TriangleMesh surface_of_genus(std::uint32_t genus) {
   const std::uint32_t nx = 2 * genus + 1;
   const auto solid = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
     if (x < 0 || y < 0 || z < 0 || x >= nx || y >= 3 || z >= 1) return false;
     return !(y == 1 && x % 2 == 1);
   };
   std::map<std::array<std::int64_t, 3>, std::uint32_t> index;
-  Mesh mesh;
+  TriangleMesh mesh;
   const auto vertex = [&](std::array<std::int64_t, 3> p) {
     return index.emplace(p, static_cast<std::uint32_t>(index.size())).first->second;
   };
@@ -170,8 +167,8 @@ Mesh surface_of_genus(std::uint32_t genus) {
   return mesh;
 }
 
-Mesh moebius_strip(std::uint32_t n) {
-  Mesh mesh{2 * n, {}};
+TriangleMesh moebius_strip(std::uint32_t n) {
+  TriangleMesh mesh{2 * n, {}};
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t a = 2 * i;
     const std::uint32_t b = 2 * i + 1;
@@ -188,7 +185,7 @@ std::uint32_t draw(std::mt19937& rng, std::uint32_t n) {
   return static_cast<std::uint32_t>(rng()) % n;
 }
 
-void shuffle(Mesh& mesh, std::mt19937& rng, bool flip) {
+void shuffle(TriangleMesh& mesh, std::mt19937& rng, bool flip) {
   std::vector<std::uint32_t> order(mesh.num_vertices);
   std::iota(order.begin(), order.end(), 0U);
   std::shuffle(order.begin(), order.end(), rng);
@@ -200,8 +197,8 @@ void shuffle(Mesh& mesh, std::mt19937& rng, bool flip) {
   }
 }
 
-Mesh random_soup(std::mt19937& rng) {
-  Mesh mesh;
+TriangleMesh random_soup(std::mt19937& rng) {
+  TriangleMesh mesh;
   mesh.num_vertices = 1 + draw(rng, 12);
   mesh.triangles.resize(draw(rng, 60));
   for (Triangle& t : mesh.triangles) {
@@ -210,10 +207,10 @@ Mesh random_soup(std::mt19937& rng) {
   return mesh;
 }
 
-std::vector<Mesh> small_meshes() {
-  Mesh shared_vertex = disjoint_union(cube(), cube());
+std::vector<TriangleMesh> small_meshes() {
+  TriangleMesh shared_vertex = disjoint_union(cube(), cube());
   merge_vertices(shared_vertex, 8, 0);
-  Mesh shared_edge = shared_vertex;
+  TriangleMesh shared_edge = shared_vertex;
   merge_vertices(shared_edge, 9, 1);
   return {{0, {}},
           {5, {}},
@@ -242,25 +239,26 @@ std::vector<Mesh> small_meshes() {
 }
 
 TEST(ConnectivityRoundTrip, SmallMeshes) {
-  const std::vector<Mesh> meshes = small_meshes();
+  const std::vector<TriangleMesh> meshes = small_meshes();
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     SCOPED_TRACE(i);
-    expect_round_trip(meshes[i]);
+    expect_connectivity_round_trip(meshes[i]);
   }
 }
 
 TEST(ConnectivityRoundTrip, ShuffledAndFlippedMeshes) {
   const auto holes = [](std::uint32_t x, std::uint32_t y) { return (x * 7 + y * 5) % 6 != 0; };
-  const std::vector<Mesh> meshes{grid(20, 17, true, true), grid(30, 20, false, false, holes),
-                                 grid(9, 30, true, false), surface_of_genus(3),
-                                 surface_of_genus(60),     moebius_strip(40)};
+  const std::vector<TriangleMesh> meshes{
+      grid(20, 17, true, true), grid(30, 20, false, false, holes),
+      grid(9, 30, true, false), surface_of_genus(3),
+      surface_of_genus(60),     moebius_strip(40)};
   std::mt19937 rng(1);
-  for (const Mesh& original : meshes) {
+  for (const TriangleMesh& original : meshes) {
     for (int variant = 0; variant < 40; ++variant) {
       SCOPED_TRACE(variant);
-      Mesh mesh = original;
+      TriangleMesh mesh = original;
       shuffle(mesh, rng, variant % 2 == 1);
-      expect_round_trip(mesh);
+      expect_connectivity_round_trip(mesh);
     }
   }
 }
@@ -269,7 +267,7 @@ TEST(ConnectivityRoundTrip, RandomTriangleSoups) {
   for (std::uint32_t seed = 0; seed < 6000; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 rng(seed);
-    expect_round_trip(random_soup(rng));
+    expect_connectivity_round_trip(random_soup(rng));
     if (HasFailure()) return;
   }
 }
@@ -279,12 +277,13 @@ TEST(ConnectivityRoundTrip, RandomlyPinchedSurfaces) {
   for (std::uint32_t seed = 0; seed < 500; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 rng(seed);
-    Mesh mesh = grid(3 + draw(rng, 9), 3 + draw(rng, 9), draw(rng, 2) == 0, draw(rng, 2) == 0);
+    TriangleMesh mesh =
+        grid(3 + draw(rng, 9), 3 + draw(rng, 9), draw(rng, 2) == 0, draw(rng, 2) == 0);
     for (std::uint32_t i = draw(rng, 12); i > 0; --i) {
       merge_vertices(mesh, draw(rng, mesh.num_vertices), draw(rng, mesh.num_vertices));
     }
     shuffle(mesh, rng, draw(rng, 4) == 0);
-    expect_round_trip(mesh);
+    expect_connectivity_round_trip(mesh);
     if (HasFailure()) return;
   }
 }
@@ -301,11 +300,11 @@ class FarJoins : public Trace {
 
 // Tests triangles across the open end of a long tube, and a small closed surface.
 TEST(ConnectivityRoundTrip, JoinsAreNearOrFar) {
-  Mesh mesh = grid(6000, 2, true, false);
+  TriangleMesh mesh = grid(6000, 2, true, false);
   mesh.triangles.push_back({0, 3000, 1500});
   mesh.triangles.push_back({1, 0, 1500});
   mesh = disjoint_union(mesh, surface_of_genus(3));
-  const ConnectivityCode code = expect_round_trip(mesh);
+  const ConnectivityCode code = expect_connectivity_round_trip(mesh);
   FarJoins joins;
   BitReader r(code.payload, 0, &joins);
   EXPECT_TRUE(parse_connectivity(r, mesh.num_vertices,
@@ -317,7 +316,7 @@ TEST(ConnectivityRoundTrip, JoinsAreNearOrFar) {
 // Tests tubes, which close by a join: the widest that needs no far one, and the next.
 TEST(ConnectivityRoundTrip, JoinsMayBeAsFarAsTheirLimit) {
   const auto is_near = [](std::uint32_t around) {
-    const Mesh mesh = grid(around, 2, true, false);
+    const TriangleMesh mesh = grid(around, 2, true, false);
     const auto code = write_connectivity(mesh.num_vertices, mesh.triangles);
     FarJoins joins;
     BitReader r(code.payload, 0, &joins);
@@ -331,12 +330,12 @@ TEST(ConnectivityRoundTrip, JoinsMayBeAsFarAsTheirLimit) {
   ASSERT_FALSE(is_near(far));
   while (far - near > 1) (is_near((near + far) / 2) ? near : far) = (near + far) / 2;
   EXPECT_GE(near, kMaxJoinDistance / 2);
-  expect_round_trip(grid(near, 2, true, false));
-  expect_round_trip(grid(far, 2, true, false));
+  expect_connectivity_round_trip(grid(near, 2, true, false));
+  expect_connectivity_round_trip(grid(far, 2, true, false));
 }
 
 TEST(ConnectivityRoundTrip, EveryProperPrefixFails) {
-  std::vector<Mesh> meshes = small_meshes();
+  std::vector<TriangleMesh> meshes = small_meshes();
   meshes.push_back(surface_of_genus(4));
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     const auto code = write_connectivity(meshes[i].num_vertices, meshes[i].triangles);
@@ -349,7 +348,7 @@ TEST(ConnectivityRoundTrip, EveryProperPrefixFails) {
 }
 
 TEST(ConnectivityRoundTrip, ChangedBytesNeverBreakTheParser) {
-  for (const Mesh& mesh : small_meshes()) {
+  for (const TriangleMesh& mesh : small_meshes()) {
     const auto code = write_connectivity(mesh.num_vertices, mesh.triangles);
     for (std::size_t i = 0; i < code.payload.size(); ++i) {
       std::vector<std::uint8_t> changed = code.payload;
@@ -372,7 +371,7 @@ TEST(ConnectivityRoundTrip, RandomBytesNeverBreakTheParser) {
     std::vector<std::uint8_t> bytes(draw(rng, 200));
     for (auto& b : bytes) b = static_cast<std::uint8_t>(rng());
     if (bytes.size() > 2 && i % 4 != 0) bytes[0] = 0x80 | (bytes[0] & 0x7F);
-    const Mesh claimed{i % 2 == 0 ? 40U : 1000000U, Triangles(draw(rng, 500))};
+    const TriangleMesh claimed{i % 2 == 0 ? 40U : 1000000U, Triangles(draw(rng, 500))};
     const auto decoded = parse(bytes, claimed);
     if (!decoded) continue;
     for (const Triangle& t : *decoded) {
@@ -382,8 +381,8 @@ TEST(ConnectivityRoundTrip, RandomBytesNeverBreakTheParser) {
 }
 
 // The triangles of an OBJ file, polygons not expected.
-Mesh read_obj(const std::filesystem::path& path) {
-  Mesh mesh;
+TriangleMesh read_obj(const std::filesystem::path& path) {
+  TriangleMesh mesh;
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
     if (line.starts_with("v ")) ++mesh.num_vertices;
@@ -404,8 +403,8 @@ TEST(ConnectivityRoundTrip, ClosedManifoldsNeedFewBits) {
   const std::filesystem::path folder = RLPC_SOURCE_DIR "/../shared/data/sequences";
   if (!std::filesystem::exists(folder / "cow.obj")) GTEST_SKIP() << "no test data";
   for (const char* name : {"cow.obj", "samba.obj"}) {
-    const Mesh mesh = read_obj(folder / name);
-    const ConnectivityCode code = expect_round_trip(mesh);
+    const TriangleMesh mesh = read_obj(folder / name);
+    const ConnectivityCode code = expect_connectivity_round_trip(mesh);
     EXPECT_LE(8.0 * static_cast<double>(code.payload.size()), 2.3 * mesh.num_vertices) << name;
   }
 }

@@ -16,11 +16,9 @@
 namespace rlpc {
 namespace {
 
-constexpr double kMaxLarger = 1.01;
+constexpr double kMaxContainedRatio = 1.01;
 // Bytes of an index that lists shared rigs, and of flags of the sequence and of each GOF.
 constexpr std::size_t kMaxMore = 6;
-
-using Frames = std::vector<std::vector<float>>;
 
 // Random animations: meshes of all kinds, and motion that suits some basis or none.
 class RandomAnimation {
@@ -108,17 +106,17 @@ class RandomAnimation {
   bool larger_;
   std::vector<double> rest_;
   std::vector<Triangle> triangles_;
-  Frames frames_;
+  std::vector<std::vector<float>> frames_;
 };
 
-std::size_t bytes_of(const RandomAnimation& animation, EncoderSettings settings,
-                     Profile profile) {
+std::size_t bytes_in_profile(const RandomAnimation& animation, EncoderSettings settings,
+                             Profile profile) {
   settings.profile = profile;
   MemoryFrames source = animation.source();
   return encode_to_memory(source, settings).size();
 }
 
-EncoderSettings settings_of(unsigned seed) {
+EncoderSettings settings_by_seed(unsigned seed) {
   constexpr std::array<double, 4> kErrors{0.03, 0.1, 0.3, 1.0};
   constexpr std::array<std::uint32_t, 3> kGofs{0, 30, EncoderSettings::kWholeSequence};
   EncoderSettings settings;
@@ -131,10 +129,11 @@ EncoderSettings settings_of(unsigned seed) {
 }
 
 void expect_none_larger(const RandomAnimation& animation, const EncoderSettings& settings) {
-  std::size_t before = bytes_of(animation, settings, Profile::kBaseline);
+  std::size_t before = bytes_in_profile(animation, settings, Profile::kBaseline);
   for (const Profile profile : {Profile::kMain, Profile::kHigh}) {
-    const std::size_t bytes = bytes_of(animation, settings, profile);
-    EXPECT_LE(static_cast<double>(bytes), kMaxLarger * static_cast<double>(before) + kMaxMore)
+    const std::size_t bytes = bytes_in_profile(animation, settings, profile);
+    EXPECT_LE(static_cast<double>(bytes),
+              kMaxContainedRatio * static_cast<double>(before) + kMaxMore)
         << "profile " << static_cast<int>(profile) << ", " << before << " bytes before";
     before = std::min(before, bytes);
   }
@@ -143,7 +142,7 @@ void expect_none_larger(const RandomAnimation& animation, const EncoderSettings&
 TEST(ContainedProfiles, AreNeverSmaller) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    expect_none_larger(RandomAnimation(seed), settings_of(seed));
+    expect_none_larger(RandomAnimation(seed), settings_by_seed(seed));
   }
 }
 
@@ -151,7 +150,7 @@ TEST(ContainedProfiles, AreNeverSmaller) {
 TEST(ContainedProfiles, AreNeverSmallerOnLargerMeshes) {
   for (const unsigned seed : {7U, 23U, 28U, 39U, 58U}) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    expect_none_larger(RandomAnimation(seed, true), settings_of(seed));
+    expect_none_larger(RandomAnimation(seed, true), settings_by_seed(seed));
   }
 }
 

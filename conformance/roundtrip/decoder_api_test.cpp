@@ -36,7 +36,7 @@ Frame frame_buffer(const Decoder& decoder) {
   return Frame(3 * std::size_t{decoder.header().num_vertices});
 }
 
-std::vector<Frame> decode_all(Decoder& decoder) {
+std::vector<Frame> frames_of_decoder(Decoder& decoder) {
   std::vector<Frame> frames;
   Frame frame = frame_buffer(decoder);
   for (;;) {
@@ -71,7 +71,7 @@ class Seeking : public testing::TestWithParam<StreamBytes (*)()> {
     ASSERT_FALSE(stream_.empty());
     auto decoder = open(stream_);
     ASSERT_TRUE(decoder);
-    frames_ = decode_all(*decoder);
+    frames_ = frames_of_decoder(*decoder);
     ASSERT_EQ(frames_.size(), decoder->header().num_frames);
   }
 
@@ -103,13 +103,13 @@ TEST_P(Seeking, EveryFrameInRandomOrderIsThatOfDecodingInOrder) {
 TEST_P(Seeking, TheEndCanBeLeftAgain) {
   auto decoder = open(stream_);
   ASSERT_TRUE(decoder);
-  EXPECT_EQ(decode_all(*decoder), frames_);
+  EXPECT_EQ(frames_of_decoder(*decoder), frames_);
   Frame frame = frame_buffer(*decoder);
   const auto after = decoder->next_frame(frame);
   ASSERT_TRUE(after);
   EXPECT_FALSE(*after);
   ASSERT_TRUE(decoder->seek(0));
-  EXPECT_EQ(decode_all(*decoder), frames_);
+  EXPECT_EQ(frames_of_decoder(*decoder), frames_);
 }
 
 TEST_P(Seeking, ParsingTheRestCountsAllGofs) {
@@ -156,13 +156,13 @@ TEST_P(Seeking, ASeekGetsPastDamage) {
   EXPECT_FALSE(decoder->next_frame(frame));
 }
 
-std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
+std::string decoded_stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
   return std::array{"Rich", "Indexed", "Plain", "Mixed"}[stream.index];
 }
 INSTANTIATE_TEST_SUITE_P(Streams, Seeking,
                          testing::Values(rich_stream, indexed_stream, plain_stream,
                                          mixed_stream),
-                         stream_name);
+                         decoded_stream_name);
 
 // The slices of a skipped GOF are skipped, too; but a cluster GOF has none.
 TEST(Decoder, DoesNotSeekPastASliceAfterAClusterGof) {
@@ -197,7 +197,7 @@ TEST(Decoder, GivesWhatTheEncoderWasGiven) {
   EXPECT_EQ(turned({decoder->triangles().begin(), decoder->triangles().end()}),
             turned(source.triangles()));
   // With the vertex order of the input, each vertex is in its place, within the error.
-  const std::vector<Frame> frames = decode_all(*decoder);
+  const std::vector<Frame> frames = frames_of_decoder(*decoder);
   std::vector<float> original(frames[0].size());
   for (std::uint32_t f = 0; f < 6; ++f) {
     ASSERT_FALSE(source.read_frame(f, original));
@@ -336,7 +336,7 @@ TEST(Unsupported, AncillaryUnitsAreSkipped) {
   const StreamBytes stream = rich_stream();
   auto plain = open(stream);
   ASSERT_TRUE(plain);
-  const std::vector<Frame> expected = decode_all(*plain);
+  const std::vector<Frame> expected = frames_of_decoder(*plain);
   for (const UnitPlace& unit : units_of(stream)) {
     if (unit.offset == kStreamHeaderBytes) continue;  // the sequence header is first
     if (unit.type == UnitType::kGofHash) continue;    // and a hash follows its GOF
@@ -347,7 +347,7 @@ TEST(Unsupported, AncillaryUnitsAreSkipped) {
     repair_crcs(longer);
     auto decoder = open(longer);
     ASSERT_TRUE(decoder) << decoder.error().rule;
-    EXPECT_EQ(decode_all(*decoder), expected);
+    EXPECT_EQ(frames_of_decoder(*decoder), expected);
   }
 }
 
@@ -374,7 +374,7 @@ TEST(Hashes, AWrongOneIsReportedWithItsFrame) {
       options.verify_hashes = false;
       auto trusting = open(changed, options);
       ASSERT_TRUE(trusting);
-      EXPECT_EQ(decode_all(*trusting).size(), 6U);
+      EXPECT_EQ(frames_of_decoder(*trusting).size(), 6U);
     }
   }
   EXPECT_EQ(frame_index, 6U);
@@ -474,7 +474,7 @@ TEST(Tracing, GetsEveryElementInOrderAndChangesNothing) {
   options.trace = &trace;
   auto traced = open(stream, options);
   ASSERT_TRUE(traced);
-  EXPECT_EQ(decode_all(*traced), decode_all(*plain));
+  EXPECT_EQ(frames_of_decoder(*traced), frames_of_decoder(*plain));
 
   const int num_units = static_cast<int>(units_of(stream).size());
   EXPECT_EQ(trace.structures["unit"], num_units);

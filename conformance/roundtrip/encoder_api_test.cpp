@@ -17,8 +17,6 @@
 namespace rlpc {
 namespace {
 
-bool discard(std::span<const std::uint8_t> /*bytes*/) { return true; }
-
 // Returns the message of the error, or "" if there is none.
 std::string error_of(FrameSource& source, const EncoderSettings& settings,
                      const ByteSink& sink = discard) {
@@ -408,7 +406,7 @@ std::vector<Edge> edges() {
 }
 
 // Encodes at 1 %, and decodes all frames.
-void expect_round_trip(const Edge& edge, EncoderSettings settings) {
+void expect_edge_round_trip(const Edge& edge, EncoderSettings settings) {
   FrameSource::Shape shape;
   shape.triangles = edge.triangles;
   MemoryFrames source(std::move(shape), edge.frames);
@@ -436,14 +434,14 @@ TEST(Encoder, AcceptsEdgeCases) {
       SCOPED_TRACE(testing::Message() << edge.name << ", " << parts << " bones or clusters");
       EncoderSettings settings;
       settings.main.bones = parts;
-      expect_round_trip(edge, settings);
+      expect_edge_round_trip(edge, settings);
       for (const FrameMode mode : {FrameMode::kAuto, FrameMode::kLcf, FrameMode::kWorld}) {
         SCOPED_TRACE(testing::Message() << "Baseline, mode " << static_cast<int>(mode));
         EncoderSettings baseline;
         baseline.profile = Profile::kBaseline;
         baseline.baseline.clusters = parts;
         baseline.baseline.frame_mode = mode;
-        expect_round_trip(edge, baseline);
+        expect_edge_round_trip(edge, baseline);
       }
     }
   }

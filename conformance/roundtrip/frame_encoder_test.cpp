@@ -20,8 +20,6 @@
 namespace rlpc {
 namespace {
 
-bool discard(std::span<const std::uint8_t> /*bytes*/) { return true; }
-
 // Errors of the decoded frames, GOF by GOF and as a whole.
 struct Measured {
   std::vector<Metrics> gofs;
@@ -55,7 +53,7 @@ Measured measure(FrameSource& source, const Encoded& encoded, std::uint32_t gof_
   return measured;
 }
 
-EncoderSettings settings_of(Profile profile, Target target, std::uint32_t gof_frames) {
+EncoderSettings fast_settings(Profile profile, Target target, std::uint32_t gof_frames) {
   EncoderSettings settings;
   settings.profile = profile;
   settings.preset = Preset::kFast;
@@ -71,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(FrameEncoder, EachProfile,
 // With fewer vertices, the error jumps by more than 2 % from step to step.
 TEST_P(EachProfile, EveryGofMeetsTheKgError) {
   MemoryFrames source = bending_tube(80, 60);
-  const auto encoded = encode_frames(source, settings_of(GetParam(), {Target::kKg, 0.5}, 20));
+  const auto encoded = encode_frames(source, fast_settings(GetParam(), {Target::kKg, 0.5}, 20));
   EXPECT_TRUE(encoded.report.target_met);
   EXPECT_EQ(encoded.report.num_gofs, 3U);
   const Measured measured = measure(source, encoded, 20);
@@ -85,14 +83,15 @@ TEST_P(EachProfile, EveryGofMeetsTheKgError) {
 TEST_P(EachProfile, EveryGofMeetsTheLargestError) {
   MemoryFrames source = bending_tube(80, 60);
   const auto encoded =
-      encode_frames(source, settings_of(GetParam(), {Target::kMaxError, 0.01}, 20));
+      encode_frames(source, fast_settings(GetParam(), {Target::kMaxError, 0.01}, 20));
   EXPECT_TRUE(encoded.report.target_met);
   for (const Metrics& gof : measure(source, encoded, 20).gofs) EXPECT_LE(gof.max_error, 0.01);
 }
 
 TEST_P(EachProfile, TheWholeStreamMeetsTheRate) {
   MemoryFrames source = bending_tube(20, 200);
-  const auto encoded = encode_frames(source, settings_of(GetParam(), {Target::kBpvf, 6.0}, 10));
+  const auto encoded =
+      encode_frames(source, fast_settings(GetParam(), {Target::kBpvf, 6.0}, 10));
   EXPECT_TRUE(encoded.report.target_met);
   const double bpvf = bits_per_vertex_per_frame(encoded.bytes.size(), 100, 200);
   EXPECT_EQ(encoded.report.bpvf, bpvf);
@@ -102,7 +101,7 @@ TEST_P(EachProfile, TheWholeStreamMeetsTheRate) {
 
 TEST_P(EachProfile, ReportsTheMetricsOfTheStream) {
   MemoryFrames source = bending_tube(8, 30);
-  const auto encoded = encode_frames(source, settings_of(GetParam(), {Target::kKg, 1.0}, 10));
+  const auto encoded = encode_frames(source, fast_settings(GetParam(), {Target::kKg, 1.0}, 10));
   const Metrics whole = measure(source, encoded, 10).whole;
   const Metrics& reported = encoded.report.metrics;
   EXPECT_EQ(reported.kg_error_percent, whole.kg_error_percent);
@@ -118,7 +117,7 @@ TEST_P(EachProfile, ReportsTheMetricsOfTheStream) {
 TEST_P(EachProfile, OneGofIsCodedAsByEncode) {
   MemoryFrames source = bending_tube(8, 20);
   EncoderSettings settings =
-      settings_of(GetParam(), {Target::kMaxError, 0.01}, EncoderSettings::kWholeSequence);
+      fast_settings(GetParam(), {Target::kMaxError, 0.01}, EncoderSettings::kWholeSequence);
   settings.preset = Preset::kMedium;
   settings.keep_order = true;
   settings.hash_mode = HashMode::kFrame;
@@ -129,13 +128,13 @@ TEST_P(EachProfile, OneGofIsCodedAsByEncode) {
 // A span that holds the whole sequence is coded as by encode(), too.
 TEST(FrameEncoder, OneSpanIsCodedAsByEncode) {
   MemoryFrames source = bending_tube(8, 30);
-  const EncoderSettings settings = settings_of(Profile::kHigh, {Target::kMaxError, 0.01}, 10);
+  const EncoderSettings settings = fast_settings(Profile::kHigh, {Target::kMaxError, 0.01}, 10);
   EXPECT_EQ(encode_frames(source, settings, 0).bytes, encode_to_memory(source, settings));
 }
 
 TEST(FrameEncoder, GofsOfASpanShareASharedRig) {
   MemoryFrames source = bending_tube(80, 60);
-  const EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 10);
+  const EncoderSettings settings = fast_settings(Profile::kHigh, {Target::kKg, 0.5}, 10);
   const Encoded apart = encode_frames(source, settings, 1);
   const Encoded in_two = encode_frames(source, settings, 30);
   const Encoded together = encode_frames(source, settings, 0);
@@ -153,7 +152,7 @@ TEST(FrameEncoder, GivesTheBytesOfASpanWhenItIsFull) {
   format.max_held_frames = 30;
   std::size_t bytes = 0;
   auto encoder = FrameEncoder::create(
-      format, settings_of(Profile::kHigh, {Target::kKg, 1.0}, 10), [&](auto more) {
+      format, fast_settings(Profile::kHigh, {Target::kKg, 1.0}, 10), [&](auto more) {
         bytes += more.size();
         return true;
       });
@@ -197,7 +196,7 @@ TEST(FrameEncoder, WithoutANumberOfFrames) {
   for (const std::optional<GofKind> kind :
        {std::optional<GofKind>(), std::optional(GofKind::kCluster),
         std::optional(GofKind::kInter)}) {
-    EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 20);
+    EncoderSettings settings = fast_settings(Profile::kHigh, {Target::kKg, 0.5}, 20);
     settings.gof_kind = kind;
     const auto encoded = encode_open_ended(source, settings);
     EXPECT_TRUE(encoded.report.target_met);
@@ -212,7 +211,7 @@ TEST(FrameEncoder, WithLowDelayAFrameIsOutWhenItIsIn) {
   MemoryFrames source = bending_tube(80, 50);
   for (const Target& target : {Target{Target::kKg, 0.5}, Target{Target::kMaxError, 0.01},
                                Target{Target::kLossless, 11}}) {
-    EncoderSettings settings = settings_of(Profile::kHigh, target, 20);
+    EncoderSettings settings = fast_settings(Profile::kHigh, target, 20);
     settings.low_delay = true;
     const auto encoded = encode_open_ended(source, settings);
     EXPECT_EQ(encoded.report.num_gofs, 3U);
@@ -230,7 +229,7 @@ TEST(FrameEncoder, WithLowDelayAFrameIsOutWhenItIsIn) {
 TEST(FrameEncoder, WithLowDelayAndANumberOfFrames) {
   MemoryFrames source = bending_tube(80, 50);
   for (const std::uint32_t gof_frames : {20U, EncoderSettings::kWholeSequence}) {
-    EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, gof_frames);
+    EncoderSettings settings = fast_settings(Profile::kHigh, {Target::kKg, 0.5}, gof_frames);
     settings.low_delay = true;
     const auto encoded = encode_frames(source, settings);
     EXPECT_EQ(encoded.report.num_gofs, gof_frames == 20U ? 3U : 1U);
@@ -243,7 +242,7 @@ TEST(FrameEncoder, WithLowDelayAPoseThatIsHeldTakesAFewBytes) {
   MemoryFrames source = bending_tube(80, 2);
   FrameFormat format = format_of(source);
   format.num_frames = 0;
-  EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 20);
+  EncoderSettings settings = fast_settings(Profile::kHigh, {Target::kKg, 0.5}, 20);
   settings.low_delay = true;
   StreamBytes bytes;
   auto encoder = FrameEncoder::create(format, settings, [&](auto more) {
@@ -265,7 +264,7 @@ TEST(FrameEncoder, WithoutAFrameThereIsNoStream) {
   FrameFormat format = format_of(source);
   format.num_frames = 0;
   for (const bool low_delay : {false, true}) {
-    EncoderSettings settings = settings_of(Profile::kHigh, {Target::kKg, 0.5}, 20);
+    EncoderSettings settings = fast_settings(Profile::kHigh, {Target::kKg, 0.5}, 20);
     settings.low_delay = low_delay;
     auto encoder = FrameEncoder::create(format, settings, discard);
     ASSERT_TRUE(encoder);
@@ -280,7 +279,7 @@ TEST(FrameEncoder, WithLowDelayAWrongFrameIsNoEnd) {
   MemoryFrames source = bending_tube(8, 4);
   FrameFormat format = format_of(source);
   format.num_frames = 0;
-  EncoderSettings settings = settings_of(Profile::kHigh, {Target::kLossless, 12}, 20);
+  EncoderSettings settings = fast_settings(Profile::kHigh, {Target::kLossless, 12}, 20);
   settings.low_delay = true;
   StreamBytes bytes;
   auto encoder = FrameEncoder::create(format, settings, [&](auto more) {
@@ -313,7 +312,7 @@ TEST(FrameEncoder, QuantisersOfThePaperNeedNoSearch) {
 
 TEST(FrameEncoder, LosslessOnAGridOfBits) {
   MemoryFrames source = bending_tube(8, 30);
-  const EncoderSettings settings = settings_of(Profile::kHigh, {Target::kLossless, 12}, 10);
+  const EncoderSettings settings = fast_settings(Profile::kHigh, {Target::kLossless, 12}, 10);
   const auto encoded = encode_frames(source, settings);
   EXPECT_EQ(encoded.report.trials, 3U);  // one for each span
   EXPECT_TRUE(encoded.report.target_met);
@@ -326,7 +325,7 @@ TEST(FrameEncoder, LosslessOnAGridOfBits) {
 
 TEST(FrameEncoder, CannotKnowTheGridOfFramesToCome) {
   MemoryFrames source = bending_tube(8, 30);
-  const EncoderSettings settings = settings_of(Profile::kHigh, {Target::kLossless, 0}, 10);
+  const EncoderSettings settings = fast_settings(Profile::kHigh, {Target::kLossless, 0}, 10);
   const auto encoder = FrameEncoder::create(format_of(source), settings, discard);
   ASSERT_FALSE(encoder);
   EXPECT_NE(encoder.error().message.find("needs a number of bits"), std::string::npos);
@@ -336,7 +335,7 @@ TEST(FrameEncoder, GivesTheBytesOfAGofWhenItIsFull) {
   MemoryFrames source = bending_tube(8, 30);
   std::size_t bytes = 0;
   auto encoder = FrameEncoder::create(
-      format_of(source), settings_of(Profile::kMain, {Target::kKg, 1.0}, 10), [&](auto more) {
+      format_of(source), fast_settings(Profile::kMain, {Target::kKg, 1.0}, 10), [&](auto more) {
         bytes += more.size();
         return true;
       });
@@ -426,7 +425,7 @@ TEST(FrameEncoder, TakesAsManyFramesAndValuesAsAnnounced) {
 
 TEST(FrameEncoder, ASinkThatFailsEndsIt) {
   MemoryFrames source = bending_tube(4, 8);
-  const auto settings = settings_of(Profile::kMain, {Target::kKg, 5.0}, 4);
+  const auto settings = fast_settings(Profile::kMain, {Target::kKg, 5.0}, 4);
   for (int allowed = 0;; ++allowed) {
     int calls = 0;
     auto encoder = FrameEncoder::create(format_of(source), settings,
@@ -456,7 +455,7 @@ TEST(FrameEncoder, ALaterGofThatNeedsAHigherLevelIsAnError) {
     format.num_frames = 2 * kGofFrames;
     format.box_max = {1, 1, 1};
     format.least_level = least_level;
-    EncoderSettings settings = settings_of(Profile::kMain, {Target::kNone, 0.0}, kGofFrames);
+    EncoderSettings settings = fast_settings(Profile::kMain, {Target::kNone, 0.0}, kGofFrames);
     settings.gof_kind = GofKind::kSkinned;
     auto encoder = FrameEncoder::create(format, settings, discard);
     std::vector<float> xyz(3 * kVertices);

@@ -15,13 +15,8 @@
 namespace rlpc {
 namespace {
 
-struct Encoded {
-  StreamBytes bytes;
-  EncodeReport report;
-};
-
-Encoded encoded(Profile profile, Target target, std::uint32_t gof_frames,
-                Preset preset = Preset::kFast) {
+Encoded encoded_tube(Profile profile, Target target, std::uint32_t gof_frames,
+                     Preset preset = Preset::kFast) {
   MemoryFrames source = bending_tube(16, 60);
   EncoderSettings settings;
   settings.profile = profile;
@@ -29,15 +24,12 @@ Encoded encoded(Profile profile, Target target, std::uint32_t gof_frames,
   settings.target = target;
   settings.gof_frames = gof_frames;
   settings.hash_mode = HashMode::kFrame;  // hashes of the encoder's reconstruction
-  Encoded result;
-  result.bytes = encode_to_memory(source, settings, &result.report);
-  EXPECT_FALSE(result.bytes.empty());
-  return result;
+  return encode_with_report(source, settings);
 }
 
 TEST(HighProfile, GofsShareARig) {
-  const Encoded high = encoded(Profile::kHigh, {Target::kKg, 0.5}, 15);
-  const Encoded main = encoded(Profile::kMain, {Target::kKg, 0.5}, 15);
+  const Encoded high = encoded_tube(Profile::kHigh, {Target::kKg, 0.5}, 15);
+  const Encoded main = encoded_tube(Profile::kMain, {Target::kKg, 0.5}, 15);
   EXPECT_TRUE(high.report.target_met);
   EXPECT_EQ(high.report.num_gofs, 4U);
   EXPECT_LT(high.bytes.size(), main.bytes.size() * 3 / 4);
@@ -49,16 +41,16 @@ TEST(HighProfile, GofsShareARig) {
 
 TEST(HighProfile, ASingleGofNeedsNoRig) {
   for (const std::uint32_t frames : {60U, EncoderSettings::kWholeSequence}) {
-    const Encoded high = encoded(Profile::kHigh, {Target::kKg, 0.5}, frames);
+    const Encoded high = encoded_tube(Profile::kHigh, {Target::kKg, 0.5}, frames);
     EXPECT_TRUE(summary_of(high.bytes).rigs.empty());
   }
 }
 
 TEST(HighProfile, MeetsItsTargets) {
-  const Encoded error = encoded(Profile::kHigh, {Target::kMaxError, 0.01}, 20);
+  const Encoded error = encoded_tube(Profile::kHigh, {Target::kMaxError, 0.01}, 20);
   EXPECT_TRUE(error.report.target_met);
   EXPECT_LE(error.report.metrics.max_error, 0.01);
-  const Encoded rate = encoded(Profile::kHigh, {Target::kBpvf, 4.0}, 20);
+  const Encoded rate = encoded_tube(Profile::kHigh, {Target::kBpvf, 4.0}, 20);
   EXPECT_TRUE(rate.report.target_met);
   EXPECT_LE(rate.report.bpvf, 4.0);
   EXPECT_GE(rate.report.bpvf, 0.95 * 4.0);
@@ -67,7 +59,7 @@ TEST(HighProfile, MeetsItsTargets) {
 
 // Many GOFs get an index, which lists the rigs.
 TEST(HighProfile, FramesAreFoundByTheIndex) {
-  const Encoded high = encoded(Profile::kHigh, {Target::kKg, 1.0}, 3);
+  const Encoded high = encoded_tube(Profile::kHigh, {Target::kKg, 1.0}, 3);
   EXPECT_EQ(high.report.num_gofs, 20U);
   const auto units = units_of(high.bytes);
   EXPECT_EQ(std::count_if(units.begin(), units.end(),
@@ -91,8 +83,8 @@ TEST(HighProfile, FramesAreFoundByTheIndex) {
 
 TEST(HighProfile, EncodesTheSameEachTime) {
   for (const Preset preset : {Preset::kFast, Preset::kMedium}) {
-    EXPECT_EQ(encoded(Profile::kHigh, {Target::kKg, 0.5}, 20, preset).bytes,
-              encoded(Profile::kHigh, {Target::kKg, 0.5}, 20, preset).bytes);
+    EXPECT_EQ(encoded_tube(Profile::kHigh, {Target::kKg, 0.5}, 20, preset).bytes,
+              encoded_tube(Profile::kHigh, {Target::kKg, 0.5}, 20, preset).bytes);
   }
 }
 

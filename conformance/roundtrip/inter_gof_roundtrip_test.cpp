@@ -14,6 +14,7 @@
 #include "common/parallel/for_each.h"
 #include "common/testing/random_inter_gof.h"
 #include "common/testing/tube.h"
+#include "conformance/testing/ample_memory.h"
 #include "decoder/codec/kinds/inter/ordered_recon.h"
 #include "decoder/codec/kinds/inter/parse/parse_inter_gof.h"
 #include "decoder/codec/parse/parse_gof_header.h"
@@ -22,8 +23,6 @@
 
 namespace rlpc {
 namespace {
-
-constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
 
 class InterGofs : public testing::Test {
  protected:
@@ -45,7 +44,7 @@ class InterGofs : public testing::Test {
   const OrderedMesh& mesh() const { return (*meshes_)[Prediction::kLayers]; }
 
   Result<InterGof> parsed(const InterGofPayloads& payloads, const SliceCut& cut = {}) {
-    InterGofParser parser(header_, mesh(), {kMemory, 0}, cut);
+    InterGofParser parser(header_, mesh(), {kAmpleMemory, 0}, cut);
     BitReader r(payloads.first);
     const GofHeader gof_header = parse_gof_header(r, header_, 0);
     if (r.error()) return *r.error();

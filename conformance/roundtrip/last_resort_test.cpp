@@ -12,7 +12,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kFrames = 8;
+constexpr std::uint32_t kStripFrames = 8;
 
 // A trembling strip of triangles, with a vertex that is far away in one frame.
 MemoryFrames strip_with_outlier(std::uint32_t num_vertices, float far_away) {
@@ -25,7 +25,7 @@ MemoryFrames strip_with_outlier(std::uint32_t num_vertices, float far_away) {
   std::vector<float> rest(3 * std::size_t{num_vertices});
   for (float& x : rest) x = number();
   std::vector<std::vector<float>> frames;
-  for (std::uint32_t f = 0; f < kFrames; ++f) {
+  for (std::uint32_t f = 0; f < kStripFrames; ++f) {
     frames.push_back(rest);
     for (float& x : frames.back()) x += 0.1F * number();
   }
@@ -33,15 +33,15 @@ MemoryFrames strip_with_outlier(std::uint32_t num_vertices, float far_away) {
   return {std::move(shape), std::move(frames)};
 }
 
-struct Case {
+struct OutlierCase {
   std::uint32_t num_vertices;
   float far_away;
   double max_error;
 };
-constexpr Case kCases[] = {
+constexpr OutlierCase kCases[] = {
     {3, 10.0F, 3e-6}, {4, 1000.0F, 3e-4}, {20, 1000.0F, 1e-3}, {3, 1e5F, 0.03}};
 
-EncoderSettings settings_for(const Case& c, Profile profile, Preset preset) {
+EncoderSettings settings_of_case(const OutlierCase& c, Profile profile, Preset preset) {
   EncoderSettings settings;
   settings.profile = profile;
   settings.preset = preset;
@@ -49,7 +49,7 @@ EncoderSettings settings_for(const Case& c, Profile profile, Preset preset) {
   return settings;
 }
 
-EncodeReport encode_case(const Case& c, const EncoderSettings& settings) {
+EncodeReport encode_case(const OutlierCase& c, const EncoderSettings& settings) {
   MemoryFrames source = strip_with_outlier(c.num_vertices, c.far_away);
   EncodeReport report;
   const StreamBytes stream = encode_to_memory(source, settings, &report);
@@ -62,17 +62,17 @@ INSTANTIATE_TEST_SUITE_P(LastResort, EachPreset,
                          testing::Values(Preset::kFast, Preset::kMedium, Preset::kSlow));
 
 TEST_P(EachPreset, MainReachesWhatBaselineReaches) {
-  for (const Case& c : kCases) {
+  for (const OutlierCase& c : kCases) {
     SCOPED_TRACE(testing::Message() << c.num_vertices << " vertices, " << c.max_error);
-    EXPECT_TRUE(encode_case(c, settings_for(c, Profile::kBaseline, GetParam())).target_met);
-    EXPECT_TRUE(encode_case(c, settings_for(c, Profile::kMain, GetParam())).target_met);
+    EXPECT_TRUE(encode_case(c, settings_of_case(c, Profile::kBaseline, GetParam())).target_met);
+    EXPECT_TRUE(encode_case(c, settings_of_case(c, Profile::kMain, GetParam())).target_met);
   }
 }
 
 TEST_P(EachPreset, BonesThatAreAskedForStay) {
   int missed = 0;
-  for (const Case& c : kCases) {
-    EncoderSettings settings = settings_for(c, Profile::kMain, GetParam());
+  for (const OutlierCase& c : kCases) {
+    EncoderSettings settings = settings_of_case(c, Profile::kMain, GetParam());
     settings.main.clusters = false;
     if (!encode_case(c, settings).target_met) ++missed;
   }
@@ -80,19 +80,19 @@ TEST_P(EachPreset, BonesThatAreAskedForStay) {
 }
 
 TEST(LastResort, FramesThatComeOneByOneReachTheTarget) {
-  for (const Case& c : kCases) {
+  for (const OutlierCase& c : kCases) {
     MemoryFrames source = strip_with_outlier(c.num_vertices, c.far_away);
     FrameFormat format;
     format.num_vertices = c.num_vertices;
-    format.num_frames = kFrames;
+    format.num_frames = kStripFrames;
     format.triangles = source.triangles();
     format.box_max = {c.far_away, 1.1F, 1.1F};
     auto encoder =
-        FrameEncoder::create(format, settings_for(c, Profile::kMain, Preset::kFast),
+        FrameEncoder::create(format, settings_of_case(c, Profile::kMain, Preset::kFast),
                              [](std::span<const std::uint8_t> /*bytes*/) { return true; });
     ASSERT_TRUE(encoder);
     std::vector<float> xyz(3 * std::size_t{c.num_vertices});
-    for (std::uint32_t f = 0; f < kFrames; ++f) {
+    for (std::uint32_t f = 0; f < kStripFrames; ++f) {
       ASSERT_FALSE(source.read_frame(f, xyz));
       ASSERT_FALSE(encoder->add_frame(xyz));
     }

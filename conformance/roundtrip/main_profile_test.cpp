@@ -13,21 +13,13 @@
 namespace rlpc {
 namespace {
 
-struct Encoded {
-  StreamBytes bytes;
-  EncodeReport report;
-};
-
-Encoded encoded(MemoryFrames& source, EncoderSettings settings) {
+Encoded encoded_in_order(MemoryFrames& source, EncoderSettings settings) {
   settings.profile = Profile::kMain;
   settings.keep_order = true;
-  Encoded result;
-  result.bytes = encode_to_memory(source, settings, &result.report);
-  EXPECT_FALSE(result.bytes.empty());
-  return result;
+  return encode_with_report(source, settings);
 }
 
-EncoderSettings settings_for(Target target, Preset preset = Preset::kFast) {
+EncoderSettings settings_with_hashes(Target target, Preset preset = Preset::kFast) {
   EncoderSettings settings;
   settings.target = target;
   settings.preset = preset;
@@ -88,9 +80,9 @@ TEST(MainProfile, DecodesToWhatTheEncoderReports) {
   for (const Preset preset : {Preset::kFast, Preset::kMedium}) {
     for (const std::uint32_t gof : {0U, 7U}) {
       MemoryFrames source = bending_tube(12, 20);
-      EncoderSettings settings = settings_for({Target::kKg, 0.5}, preset);
+      EncoderSettings settings = settings_with_hashes({Target::kKg, 0.5}, preset);
       settings.gof_frames = gof;
-      const Encoded e = encoded(source, settings);
+      const Encoded e = encoded_in_order(source, settings);
       const Metrics metrics = decoded_metrics(source, e.bytes);
       EXPECT_EQ(metrics.kg_error_percent, e.report.metrics.kg_error_percent);
       EXPECT_EQ(metrics.max_error, e.report.metrics.max_error);
@@ -105,7 +97,8 @@ TEST(MainProfile, DecodesToWhatTheEncoderReports) {
 TEST(MainProfile, HoldsTheLargestErrorOfAVertex) {
   for (const double bound : {0.05, 0.005, 0.0005}) {
     MemoryFrames source = bending_tube(12, 16);
-    const Encoded e = encoded(source, settings_for({Target::kMaxError, bound}));
+    const Encoded e =
+        encoded_in_order(source, settings_with_hashes({Target::kMaxError, bound}));
     EXPECT_TRUE(e.report.target_met) << bound;
     EXPECT_LE(decoded_metrics(source, e.bytes).max_error, bound);
   }
@@ -114,12 +107,13 @@ TEST(MainProfile, HoldsTheLargestErrorOfAVertex) {
 TEST(MainProfile, FramesOfAStillOrRigidMeshCostNextToNothing) {
   const auto bytes = [](std::uint32_t num_frames, bool moves) {
     MemoryFrames source = moved_tube(num_frames, moves);
-    return encoded(source,
-                   [] {
-                     EncoderSettings settings = settings_for({Target::kMaxError, 0.01});
-                     settings.hash_mode = HashMode::kNone;
-                     return settings;
-                   }())
+    return encoded_in_order(
+               source,
+               [] {
+                 EncoderSettings settings = settings_with_hashes({Target::kMaxError, 0.01});
+                 settings.hash_mode = HashMode::kNone;
+                 return settings;
+               }())
         .bytes.size();
   };
   const std::size_t one = bytes(1, false);
@@ -130,8 +124,9 @@ TEST(MainProfile, FramesOfAStillOrRigidMeshCostNextToNothing) {
 TEST(MainProfile, EncodesTheSameEachTime) {
   for (const Preset preset : {Preset::kFast, Preset::kMedium}) {
     MemoryFrames source = bending_tube(10, 12);
-    const EncoderSettings settings = settings_for({Target::kKg, 0.3}, preset);
-    EXPECT_EQ(encoded(source, settings).bytes, encoded(source, settings).bytes);
+    const EncoderSettings settings = settings_with_hashes({Target::kKg, 0.3}, preset);
+    EXPECT_EQ(encoded_in_order(source, settings).bytes,
+              encoded_in_order(source, settings).bytes);
   }
 }
 
@@ -150,10 +145,10 @@ TEST(MainProfile, RaisesTheLevelForManyTrajectories) {
     }
   }
   MemoryFrames source(std::move(shape), std::move(frames));
-  EncoderSettings settings = settings_for({Target::kKg, 1.0});
+  EncoderSettings settings = settings_with_hashes({Target::kKg, 1.0});
   settings.gof_frames = EncoderSettings::kWholeSequence;
   settings.gof_kind = GofKind::kSkinned;  // clusters cost less
-  const Encoded e = encoded(source, settings);
+  const Encoded e = encoded_in_order(source, settings);
   EXPECT_GT(e.report.components, kLevels[0].max_components);
   EXPECT_EQ(e.report.header.level_idc, 2U);
   EXPECT_LE(decoded_metrics(source, e.bytes).kg_error_percent, 1.0);
@@ -185,7 +180,7 @@ TEST(MainProfile, AcceptsDegenerateMeshes) {
       }
     }
     MemoryFrames source(std::move(shape), std::move(frames));
-    const Encoded e = encoded(source, settings_for({Target::kMaxError, 0.01}));
+    const Encoded e = encoded_in_order(source, settings_with_hashes({Target::kMaxError, 0.01}));
     EXPECT_LE(decoded_metrics(source, e.bytes).max_error, 0.01);
   }
 }

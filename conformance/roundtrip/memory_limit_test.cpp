@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/codec/mesh/vertex_layers.h"
+#include "common/testing/triangle_mesh.h"
 #include "conformance/testing/count_memory.h"
 #include "conformance/testing/small_animation.h"
 #include "conformance/tools/make_worst_case.h"
@@ -24,7 +25,7 @@ using worst_case::Size;
 
 constexpr std::uint32_t kAround = worst_case::kAround;
 
-StreamBytes stream_of(const Plan& plan) {
+StreamBytes worst_case_stream(const Plan& plan) {
   StreamBytes stream;
   worst_case::write_stream(plan, [&](const Bytes& bytes) {
     stream.insert(stream.end(), bytes.begin(), bytes.end());
@@ -39,8 +40,8 @@ struct Memory {
 
 // Decodes all frames under the limit of memory.estimate. Returns the error, and sets the peak
 // of allocated memory.
-std::optional<Error> decode(const StreamBytes& stream, Memory& memory,
-                            std::uint32_t coarse_layers = SliceCut::kAll) {
+std::optional<Error> decode_with_limit(const StreamBytes& stream, Memory& memory,
+                                       std::uint32_t coarse_layers = SliceCut::kAll) {
   auto source = memory_source(StreamBytes(stream));
   DecoderOptions options;
   options.coarse_layers = coarse_layers;
@@ -65,7 +66,7 @@ Memory memory_for(const StreamBytes& stream, std::uint32_t coarse_layers = Slice
   constexpr std::uint64_t kDecoderBytes = 4096;
   Memory memory;
   for (;;) {
-    const auto error = decode(stream, memory, coarse_layers);
+    const auto error = decode_with_limit(stream, memory, coarse_layers);
     EXPECT_LT(memory.peak, memory.estimate + kDecoderBytes);
     if (!error) return memory;
     EXPECT_EQ(error->code, Errc::kLimitExceeded) << error->rule << ' ' << error->element;
@@ -76,7 +77,7 @@ Memory memory_for(const StreamBytes& stream, std::uint32_t coarse_layers = Slice
 }
 
 void expect_within_estimate(const Plan& plan, double min_share = 0.0) {
-  const Memory memory = memory_for(stream_of(plan));
+  const Memory memory = memory_for(worst_case_stream(plan));
   // A limit that is far too high would refuse streams without need.
   EXPECT_GT(static_cast<double>(memory.peak), min_share * static_cast<double>(memory.estimate));
 }
@@ -85,11 +86,11 @@ std::vector<Triangle> tube(std::uint32_t num_vertices) {
   return worst_case::make_mesh(num_vertices, 4 * num_vertices);
 }
 
-constexpr std::uint32_t kVertices = 10 * kAround;
+constexpr std::uint32_t kTubeVertices = 10 * kAround;
 
 TEST(MemoryLimit, HoldsForClusters) {
   const std::uint32_t vertices = 3 * kAround;
-  const Size many_factors{kVertices, 4, 129, 1, 0};
+  const Size many_factors{kTubeVertices, 4, 129, 1, 0};
   const Size many_frames{vertices, 512, 100, 1, 0};
   for (const Size& size : {many_factors, many_frames}) {
     SCOPED_TRACE(size.vertices);
@@ -99,11 +100,11 @@ TEST(MemoryLimit, HoldsForClusters) {
 
 TEST(MemoryLimit, HoldsForSkinnedGofs) {
   const std::uint32_t vertices = 3 * kAround;
-  const Size sizes[] = {{kVertices, 1, 1, 200, 1},    // eight influences for each vertex
-                        {vertices, 256, 1, 100, 1},   // tracks of bones
-                        {vertices, 256, 100, 2, 20},  // tracks of trajectories
-                        {kVertices, 4, 65, 20, 20},
-                        {kVertices, 4, 129, 20, 20}};
+  const Size sizes[] = {{kTubeVertices, 1, 1, 200, 1},  // eight influences for each vertex
+                        {vertices, 256, 1, 100, 1},     // tracks of bones
+                        {vertices, 256, 100, 2, 20},    // tracks of trajectories
+                        {kTubeVertices, 4, 65, 20, 20},
+                        {kTubeVertices, 4, 129, 20, 20}};
   for (const Kind kind : {Kind::kSkinned, Kind::kSharedRig}) {
     for (const Size& size : sizes) {
       SCOPED_TRACE(size.frames + size.components);
@@ -114,10 +115,10 @@ TEST(MemoryLimit, HoldsForSkinnedGofs) {
 
 TEST(MemoryLimit, HoldsForFrames) {
   const std::uint32_t vertices = 3 * kAround;
-  const Size sizes[] = {{kVertices, 2, 1, 0, 0, 0},    // filters
-                        {kVertices, 3, 8, 0, 0, 0},    // filters of many temporal layers
-                        {vertices, 100, 1, 0, 0, 0},   // residuals
-                        {vertices, 70, 2, 0, 0, 60}};  // frames that can be repeated
+  const Size sizes[] = {{kTubeVertices, 2, 1, 0, 0, 0},  // filters
+                        {kTubeVertices, 3, 8, 0, 0, 0},  // filters of many temporal layers
+                        {vertices, 100, 1, 0, 0, 0},     // residuals
+                        {vertices, 70, 2, 0, 0, 60}};    // frames that can be repeated
   for (const Size& size : sizes) {
     SCOPED_TRACE(size.frames + size.components);
     expect_within_estimate({1, Kind::kInter, size, tube(size.vertices)}, 0.3);
@@ -139,10 +140,10 @@ TEST(MemoryLimit, HoldsForSharedRigs) {
 TEST(MemoryLimit, ReplacedRigsTakeNone) {
   Plan plan{1, Kind::kSharedRig, {3 * kAround, 1, 64, 10, 2}, tube(3 * kAround), 8, 1};
   Memory once{1U << 30, 0};
-  EXPECT_FALSE(decode(stream_of(plan), once));
+  EXPECT_FALSE(decode_with_limit(worst_case_stream(plan), once));
   plan.num_rounds = 2;
   Memory twice{1U << 30, 0};
-  EXPECT_FALSE(decode(stream_of(plan), twice));
+  EXPECT_FALSE(decode_with_limit(worst_case_stream(plan), twice));
   EXPECT_LT(twice.peak, once.peak * 9 / 8);
 }
 
@@ -207,24 +208,20 @@ std::vector<Triangle> wheels(std::uint32_t num_vertices) {
 
 // Meshes with these numbers of vertices. In some, growing lists would have just doubled: the
 // nodes of 11,000 triangles apart, the 6 * 1,366 edges of tetrahedra.
-struct Mesh {
-  std::uint32_t num_vertices = 0;
-  std::vector<Triangle> triangles;
-};
-std::vector<Mesh> meshes_of_any_kind() {
+std::vector<TriangleMesh> meshes_of_any_kind() {
   const std::uint32_t few = 3 * kAround;
-  return {{kVertices, {}},
-          {kVertices, tube(kVertices)},
-          {kVertices, triangles_apart(kVertices, 2 * kVertices)},
+  return {{kTubeVertices, {}},
+          {kTubeVertices, tube(kTubeVertices)},
+          {kTubeVertices, triangles_apart(kTubeVertices, 2 * kTubeVertices)},
           {few, triangles_apart(few, 11000)},
           {few, tetrahedra(few, 1366)},
-          {kVertices, wheels(kVertices)}};
+          {kTubeVertices, wheels(kTubeVertices)}};
 }
 
 TEST(MemoryLimit, HoldsForMeshesOfAnyKind) {
   for (const Kind kind : {Kind::kCluster, Kind::kSkinned, Kind::kSharedRig, Kind::kInter}) {
     SCOPED_TRACE(static_cast<int>(kind));
-    for (const Mesh& mesh : meshes_of_any_kind()) {
+    for (const TriangleMesh& mesh : meshes_of_any_kind()) {
       expect_within_estimate({1, kind, {mesh.num_vertices, 1, 1, 1, 0}, mesh.triangles});
     }
   }
@@ -234,9 +231,11 @@ TEST(MemoryLimit, HoldsForMeshesOfAnyKind) {
 TEST(MemoryLimit, HoldsForCoarseMeshes) {
   for (const Kind kind : {Kind::kCluster, Kind::kSharedRig}) {
     SCOPED_TRACE(static_cast<int>(kind));
-    for (const Mesh& mesh : meshes_of_any_kind()) {
+    for (const TriangleMesh& mesh : meshes_of_any_kind()) {
       const Plan plan{1, kind, {mesh.num_vertices, 1, 1, 1, 0}, mesh.triangles};
-      for (const std::uint32_t layers : {1U, kMaxLayers}) memory_for(stream_of(plan), layers);
+      for (const std::uint32_t layers : {1U, kMaxLayers}) {
+        memory_for(worst_case_stream(plan), layers);
+      }
     }
   }
 }

@@ -18,12 +18,12 @@
 namespace rlpc {
 namespace {
 
-constexpr std::int32_t kMin = std::numeric_limits<std::int32_t>::min();
-constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max();
+constexpr std::int32_t kMinInt32 = std::numeric_limits<std::int32_t>::min();
+constexpr std::int32_t kMaxInt32 = std::numeric_limits<std::int32_t>::max();
 
 // Returns small numbers and large ones of all sizes, the same on every run.
 std::vector<std::int32_t> test_positions(std::size_t count) {
-  std::vector<std::int32_t> positions{0, 1, -1, kMin, kMax, 16777217, -16777219};
+  std::vector<std::int32_t> positions{0, 1, -1, kMinInt32, kMaxInt32, 16777217, -16777219};
   std::uint64_t state = 1;
   while (positions.size() < count) {
     state = state * 6364136223846793005U + 1442695040888963407U;
@@ -119,10 +119,10 @@ TEST_F(MeshFiles, SparseTargetsMakeASmallerFile) {
 }
 
 TEST_F(MeshFiles, RefusesPositionsThatNoFloatHolds) {
-  options_.grid = {120, {kMax, 0, 0}};
+  options_.grid = {120, {kMaxInt32, 0, 0}};
   auto sink = open_frame_sink(path("x.glb"), options_);
   ASSERT_TRUE(sink);
-  const auto error = (*sink)->write_frame(std::vector<std::int32_t>(300, kMax));
+  const auto error = (*sink)->write_frame(std::vector<std::int32_t>(300, kMaxInt32));
   ASSERT_TRUE(error);
   EXPECT_NE(error->message.find("frame 0 (from 0), vertex 0: too large"), std::string::npos);
 }

@@ -15,7 +15,7 @@
 namespace rlpc {
 namespace {
 
-constexpr double kMaxLarger = 1.03;
+constexpr double kMaxBonesRatio = 1.03;
 
 // Boxes that turn and move, one after the other, as objects of a scene do.
 class MovingBoxes {
@@ -94,7 +94,7 @@ class MovingBoxes {
   std::vector<double> shifts_;
 };
 
-std::size_t bytes_of(const MovingBoxes& boxes, Profile profile, std::uint32_t num_bones) {
+std::size_t bytes_of_boxes(const MovingBoxes& boxes, Profile profile, std::uint32_t num_bones) {
   EncoderSettings settings;
   settings.profile = profile;
   settings.target = {Target::kKg, 0.1};
@@ -108,9 +108,9 @@ TEST(MovingParts, AreFoundWithoutAskingForTheirNumber) {
   for (unsigned seed = 0; seed < 8; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const MovingBoxes boxes(seed);
-    const std::size_t chosen = bytes_of(boxes, Profile::kMain, 0);
-    const std::size_t asked = bytes_of(boxes, Profile::kMain, boxes.num_boxes());
-    EXPECT_LE(static_cast<double>(chosen), kMaxLarger * static_cast<double>(asked))
+    const std::size_t chosen = bytes_of_boxes(boxes, Profile::kMain, 0);
+    const std::size_t asked = bytes_of_boxes(boxes, Profile::kMain, boxes.num_boxes());
+    EXPECT_LE(static_cast<double>(chosen), kMaxBonesRatio * static_cast<double>(asked))
         << "with " << boxes.num_boxes() << " bones: " << asked;
   }
 }

@@ -14,7 +14,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kFrames = 30;
+constexpr std::uint32_t kTubeFrames = 30;
 
 // A tube whose vertices swing in `modes` ways, which change after half of the time.
 MemoryFrames changing_tube(std::uint32_t modes) {
@@ -23,7 +23,7 @@ MemoryFrames changing_tube(std::uint32_t modes) {
   shape.frame_rate = {24, 1};
   shape.triangles = tube_triangles(kRings, 5);
   std::vector<std::vector<float>> frames;
-  for (std::uint32_t f = 0; f < kFrames; ++f) {
+  for (std::uint32_t f = 0; f < kTubeFrames; ++f) {
     std::vector<float> xyz;
     for (std::uint32_t v = 0; v < 5 * kRings; ++v) {
       const std::uint32_t ring = v / 5;
@@ -31,7 +31,7 @@ MemoryFrames changing_tube(std::uint32_t modes) {
       double radius = 1.0;
       for (std::uint32_t m = 0; m < modes; ++m) {
         const double speed = 0.3 + 0.17 * m;
-        const double phase = (f < kFrames / 2 ? 1.7 : 2.9) * (m + 1.0) * v;
+        const double phase = (f < kTubeFrames / 2 ? 1.7 : 2.9) * (m + 1.0) * v;
         along += 0.2 * std::sin(speed * f) * std::sin(phase);
         radius += 0.2 * std::sin(speed * f) * std::cos(1.3 * phase);
       }
@@ -45,7 +45,7 @@ MemoryFrames changing_tube(std::uint32_t modes) {
   return {std::move(shape), std::move(frames)};
 }
 
-std::size_t bytes_of(std::uint32_t modes, const EncoderSettings& settings) {
+std::size_t bytes_of_tube(std::uint32_t modes, const EncoderSettings& settings) {
   MemoryFrames source = changing_tube(modes);
   return encode_to_memory(source, settings).size();
 }
@@ -61,13 +61,13 @@ TEST_P(PresetSlow, KeepsTheSmallestOfItsSearches) {
     settings.profile = GetParam();
     settings.preset = Preset::kSlow;
     settings.gof_frames = EncoderSettings::kWholeSequence;
-    const std::size_t one_gof = bytes_of(modes, settings);
-    settings.gof_frames = kFrames / 2;
-    EXPECT_LE(one_gof, bytes_of(modes, settings));
+    const std::size_t one_gof = bytes_of_tube(modes, settings);
+    settings.gof_frames = kTubeFrames / 2;
+    EXPECT_LE(one_gof, bytes_of_tube(modes, settings));
     settings.preset = Preset::kMedium;
-    EXPECT_LE(one_gof, bytes_of(modes, settings));
+    EXPECT_LE(one_gof, bytes_of_tube(modes, settings));
     settings.gof_frames = EncoderSettings::kWholeSequence;
-    EXPECT_LE(one_gof, bytes_of(modes, settings));
+    EXPECT_LE(one_gof, bytes_of_tube(modes, settings));
   }
 }
 
@@ -79,7 +79,7 @@ TEST_P(PresetSlow, LeavesNoThreadsBehind) {
     settings.preset = Preset::kSlow;
     settings.gof_frames = EncoderSettings::kWholeSequence;
     settings.threads = 3;
-    EXPECT_GT(bytes_of(modes, settings), 0U);
+    EXPECT_GT(bytes_of_tube(modes, settings), 0U);
     std::atomic<int> passes = 0;
     for_each(10, [&](std::size_t) { ++passes; });
     EXPECT_EQ(passes, 10);

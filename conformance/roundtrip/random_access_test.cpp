@@ -20,7 +20,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint64_t kAmple = std::uint64_t{64} << 20;
+constexpr std::uint64_t kAmpleCache = std::uint64_t{64} << 20;
 
 using Frame = std::vector<std::int32_t>;
 
@@ -110,7 +110,7 @@ class RandomAccess : public testing::TestWithParam<StreamBytes (*)()> {
 
 TEST_P(RandomAccess, GivesTheFramesOfDecodingInOrder) {
   for (const std::uint32_t threads : {1U, 2U, 4U}) {
-    for (const std::uint64_t cached : {std::uint64_t{0}, std::uint64_t{20000}, kAmple}) {
+    for (const std::uint64_t cached : {std::uint64_t{0}, std::uint64_t{20000}, kAmpleCache}) {
       DecoderOptions options;
       options.threads = threads;
       options.max_cached_bytes = cached;
@@ -139,7 +139,7 @@ TEST_P(RandomAccess, BackwardGivesTheSameFrames) {
   for (const std::uint32_t threads : {1U, 2U}) {
     DecoderOptions options;
     options.threads = threads;
-    options.max_cached_bytes = kAmple;
+    options.max_cached_bytes = kAmpleCache;
     auto decoder = open(options);
     for (std::uint32_t f = last() + 1; f-- > 0;) {
       ASSERT_NO_FATAL_FAILURE(expect_frame(*decoder, f));
@@ -149,7 +149,7 @@ TEST_P(RandomAccess, BackwardGivesTheSameFrames) {
 
 TEST_P(RandomAccess, AlternatingBetweenGofsReadsNothingAgain) {
   DecoderOptions options;
-  options.max_cached_bytes = kAmple;
+  options.max_cached_bytes = kAmpleCache;
   auto decoder = open(options);
   ASSERT_NO_FATAL_FAILURE(expect_frame(*decoder, 0));
   ASSERT_NO_FATAL_FAILURE(expect_frame(*decoder, last()));
@@ -171,7 +171,7 @@ TEST_P(RandomAccess, AlternatingBetweenGofsReadsNothingAgain) {
 
 TEST_P(RandomAccess, APrefetchedGofIsThereWithOneThread) {
   DecoderOptions options;
-  options.max_cached_bytes = kAmple;
+  options.max_cached_bytes = kAmpleCache;
   auto decoder = open(options);
   ASSERT_NO_FATAL_FAILURE(expect_frame(*decoder, 0));
   ASSERT_TRUE(decoder->prefetch(last()));
@@ -213,7 +213,7 @@ TEST_P(RandomAccess, GoesOnAfterDamage) {
   for (const std::uint32_t threads : {1U, 2U}) {
     DecoderOptions options;
     options.threads = threads;
-    options.max_cached_bytes = kAmple;
+    options.max_cached_bytes = kAmpleCache;
     auto decoder = open(options);
     Frame frame(3 * std::size_t{decoder->num_vertices()});
     ASSERT_TRUE(decoder->prefetch(1));  // its error comes with the frame
@@ -232,7 +232,7 @@ TEST_P(AttributesOfStreams, LeaveTheDecoderWhereItIs) {
   auto wanted = open({})->attributes();
   ASSERT_TRUE(wanted);
   ASSERT_EQ(wanted->size(), 1U);
-  for (const std::uint64_t cached : {std::uint64_t{0}, kAmple}) {
+  for (const std::uint64_t cached : {std::uint64_t{0}, kAmpleCache}) {
     for (const std::uint32_t before : {0U, 1U, 7U, 8U, 9U, last(), last() + 1}) {
       DecoderOptions options;
       options.max_cached_bytes = cached;
@@ -278,7 +278,7 @@ TEST_P(AttributesOfStreams, NeedTheFirstGofAlone) {
 
 TEST_P(RandomAccess, PrefetchingAtTheEndLeavesItThere) {
   DecoderOptions options;
-  options.max_cached_bytes = kAmple;
+  options.max_cached_bytes = kAmpleCache;
   auto decoder = open(options);
   Frame frame(3 * std::size_t{decoder->num_vertices()});
   while (*decoder->next_frame(frame)) {
@@ -299,24 +299,24 @@ TEST_P(RandomAccess, KeptGofsGiveWayToTheLimit) {
   };
   options.limits.max_memory_bytes = open({})->memory().stream_bytes;
   while (!is_enough()) options.limits.max_memory_bytes += 1000;
-  options.max_cached_bytes = kAmple;
+  options.max_cached_bytes = kAmpleCache;
   auto tight = open(options);
   for (int i = 0; i < 8; ++i) {
     ASSERT_NO_FATAL_FAILURE(expect_frame(*tight, i % 2 == 0 ? 1 : last() - 1));
   }
 }
 
-std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
+std::string accessed_stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
   return std::array{"Main", "Rigs", "Chained", "Dyadic", "Independent"}[stream.index];
 }
 INSTANTIATE_TEST_SUITE_P(Streams, RandomAccess,
                          testing::Values(main_stream, rig_stream, chained_stream, dyadic_stream,
                                          independent_stream),
-                         stream_name);
+                         accessed_stream_name);
 INSTANTIATE_TEST_SUITE_P(Streams, AttributesOfStreams,
                          testing::Values(main_stream, chained_stream, dyadic_stream,
                                          independent_stream),
-                         stream_name);
+                         accessed_stream_name);
 
 }  // namespace
 }  // namespace rlpc

@@ -8,17 +8,17 @@
 #include <vector>
 
 #include "common/codec/bits/range_encoder.h"
+#include "common/testing/residual_bound.h"
 #include "decoder/codec/parse/parse_residual.h"
 #include "encoder/codec/write/write_residual.h"
 
 namespace rlpc {
 namespace {
 
-using Coded = std::vector<std::pair<std::uint32_t, std::int32_t>>;  // expected magnitude, value
+using ResidualList =
+    std::vector<std::pair<std::uint32_t, std::int32_t>>;  // expected magnitude, value
 
-constexpr auto kMax = static_cast<std::int32_t>(kMaxResidual);
-
-void expect_round_trip(const Coded& list) {
+void expect_residual_round_trip(const ResidualList& list) {
   RangeEncoder re;
   ResidualModels models;
   for (const auto& [expected, value] : list) write_residual(re, models, expected, value);
@@ -49,7 +49,7 @@ std::vector<std::uint32_t> expected_magnitudes() {
 std::vector<std::int32_t> extreme_values() {
   std::vector<std::int32_t> list{0};
   const auto add = [&](std::int64_t magnitude) {
-    if (magnitude <= 0 || magnitude > kMax) return;
+    if (magnitude <= 0 || magnitude > kResidualBound) return;
     list.push_back(static_cast<std::int32_t>(magnitude));
     list.push_back(-static_cast<std::int32_t>(magnitude));
   };
@@ -63,16 +63,16 @@ std::vector<std::int32_t> extreme_values() {
 
 TEST(Residual, EveryMagnitudeComesBackInEveryContext) {
   for (const std::uint32_t expected : expected_magnitudes()) {
-    Coded list;
+    ResidualList list;
     for (const std::int32_t value : extreme_values()) list.emplace_back(expected, value);
-    expect_round_trip(list);
+    expect_residual_round_trip(list);
   }
 }
 
 TEST(Residual, TheLargestComesBackAloneInEveryContext) {
   for (const std::uint32_t expected : expected_magnitudes()) {
-    expect_round_trip({{expected, kMax}});
-    expect_round_trip({{expected, -kMax}});
+    expect_residual_round_trip({{expected, kResidualBound}});
+    expect_residual_round_trip({{expected, -kResidualBound}});
   }
 }
 
@@ -80,7 +80,7 @@ TEST(Residual, RandomValuesComeBack) {
   for (unsigned seed = 1; seed <= 50; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    Coded list;
+    ResidualList list;
     for (int i = 0; i < 2000; ++i) {
       const auto expected = static_cast<std::uint32_t>((random() >> 2) >> (random() % 31));
       // Residuals mostly have the expected magnitude, sometimes any.
@@ -90,7 +90,7 @@ TEST(Residual, RandomValuesComeBack) {
           std::min<std::uint64_t>(random() % 16 == 0 ? any : around, kMaxResidual));
       list.emplace_back(expected, random() % 2 == 0 ? value : -value);
     }
-    expect_round_trip(list);
+    expect_residual_round_trip(list);
   }
 }
 
@@ -107,12 +107,12 @@ TEST(Residual, OfAnyBytesIsNoLargerThanTheLargest) {
     ResidualModels models;
     for (const std::uint32_t expected : expected_magnitudes()) {
       const std::int32_t value = parse_residual(rd, models, expected);
-      ASSERT_LE(value, kMax);
-      ASSERT_GE(value, -kMax);
+      ASSERT_LE(value, kResidualBound);
+      ASSERT_GE(value, -kResidualBound);
       largest = std::max(largest, value < 0 ? -value : value);
     }
   }
-  EXPECT_EQ(largest, kMax);  // clipping did happen
+  EXPECT_EQ(largest, kResidualBound);  // clipping did happen
 }
 
 TEST(ResidualContext, GrowsWithTheExpectedMagnitude) {

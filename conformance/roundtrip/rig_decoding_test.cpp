@@ -27,12 +27,6 @@ DecoderOptions with_threads(std::uint32_t threads) {
   return options;
 }
 
-std::vector<UnitPlace> units_of_type(const StreamBytes& stream, UnitType type) {
-  std::vector<UnitPlace> units = units_of(stream);
-  std::erase_if(units, [type](const UnitPlace& unit) { return unit.type != type; });
-  return units;
-}
-
 // Decodes a frame by seeking. Returns the broken rule if that fails.
 std::string seek_to(Decoder& decoder, std::uint32_t f, Frame& frame) {
   frame.resize(3 * std::size_t{decoder.header().num_vertices});

@@ -37,7 +37,8 @@ Result<Decoder> open_copy(const StreamBytes& bytes, const DecoderOptions& option
   return Decoder::open(memory_source(StreamBytes(bytes)), options);
 }
 
-Decoded decode(const StreamBytes& bytes, const DecoderOptions& options = small_options()) {
+Decoded decode_until_error(const StreamBytes& bytes,
+                           const DecoderOptions& options = small_options()) {
   Decoded out;
   auto decoder = open_copy(bytes, options);
   if (!decoder) {
@@ -76,7 +77,7 @@ class Robustness : public testing::TestWithParam<StreamBytes (*)()> {
   void SetUp() override {
     stream_ = GetParam()();
     ASSERT_FALSE(stream_.empty());
-    expected_ = decode(stream_);
+    expected_ = decode_until_error(stream_);
     ASSERT_FALSE(expected_.error) << expected_.error->rule << " " << expected_.error->element;
     for (const UnitPlace& unit : units_of(stream_)) {
       if (unit.type == UnitType::kSlice) slices_.insert(unit.offset);
@@ -85,7 +86,7 @@ class Robustness : public testing::TestWithParam<StreamBytes (*)()> {
 
   // The frames before the error are right.
   void expect_error(const StreamBytes& bytes, Decoded& got) const {
-    got = decode(bytes);
+    got = decode_until_error(bytes);
     ASSERT_TRUE(got.error);
     ASSERT_LE(got.frames.size(), expected_.frames.size());
     ASSERT_TRUE(std::equal(got.frames.begin(), got.frames.end(), expected_.frames.begin()));
@@ -103,8 +104,8 @@ class Robustness : public testing::TestWithParam<StreamBytes (*)()> {
   void expect_an_end(StreamBytes bytes) const {
     repair_crcs(bytes);
     const auto start = std::chrono::steady_clock::now();
-    (void)decode(bytes);
-    (void)decode(bytes, small_options(false));
+    (void)decode_until_error(bytes);
+    (void)decode_until_error(bytes, small_options(false));
     (void)decode_frame(bytes, static_cast<std::uint32_t>(expected_.frames.size()) - 1);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     ASSERT_LT(taken.count(), 10.0);
@@ -179,11 +180,12 @@ TEST_P(Robustness, EveryShorterOrLongerPayloadFails) {
       const StreamBytes damaged = with_payload(stream_, unit, payload.first(n));
       SCOPED_TRACE(testing::Message() << "unit at " << unit.offset << ", payload " << n);
       ASSERT_NO_FATAL_FAILURE(expect_an_end(damaged));
-      ASSERT_EQ(decode(damaged).error.has_value(), must_fail);
+      ASSERT_EQ(decode_until_error(damaged).error.has_value(), must_fail);
     }
     StreamBytes longer(payload.begin(), payload.end());
     longer.push_back(0);
-    EXPECT_EQ(decode(with_payload(stream_, unit, longer)).error.has_value(), must_fail)
+    EXPECT_EQ(decode_until_error(with_payload(stream_, unit, longer)).error.has_value(),
+              must_fail)
         << "unit at " << unit.offset;
   }
 }
@@ -204,17 +206,17 @@ TEST_P(Robustness, UnitsLeftOutOrRepeatedEnd) {
     // a shared rig may replace one without slices.
     const bool ancillary = (stream_[unit.offset] & kAncillaryFlag) != 0;
     const bool optional = ancillary || unit.type == UnitType::kVertexOrder;
-    EXPECT_TRUE(optional || decode(without).error);
-    EXPECT_TRUE(ancillary || unit.type == UnitType::kRig || decode(twice).error);
+    EXPECT_TRUE(optional || decode_until_error(without).error);
+    EXPECT_TRUE(ancillary || unit.type == UnitType::kRig || decode_until_error(twice).error);
   }
 }
 
-std::string stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
+std::string damaged_stream_name(const testing::TestParamInfo<StreamBytes (*)()>& stream) {
   return std::array{"Rich", "Indexed", "Rigs"}.at(stream.index);
 }
 INSTANTIATE_TEST_SUITE_P(Streams, Robustness,
                          testing::Values(rich_stream, indexed_stream, indexed_rig_stream),
-                         stream_name);
+                         damaged_stream_name);
 
 }  // namespace
 }  // namespace rlpc

@@ -13,6 +13,8 @@
 #include "common/codec/kinds/skinned/recon/rig_recon.h"
 #include "common/codec/kinds/skinned/recon/skinned_recon.h"
 #include "common/testing/split_skinned_gof.h"
+#include "conformance/testing/ample_memory.h"
+#include "conformance/testing/error_text.h"
 #include "decoder/codec/kinds/skinned/parse/parse_skinned_gof.h"
 #include "decoder/codec/parse/parse_gof_header.h"
 #include "encoder/codec/write/write_skinned_gof.h"
@@ -20,17 +22,16 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
 using Payload = std::vector<std::uint8_t>;
 
 // Parses a rig or a GOF that uses it, as a decoder does.
-class Reading {
+class RigReading {
  public:
-  explicit Reading(const SplitSkinnedGof& from, const RigSlots& rigs = {})
+  explicit RigReading(const SplitSkinnedGof& from, const RigSlots& rigs = {})
       : from_(from),
         rigs_(rigs),
         meshes_(from.whole.topology, from.whole.triangles),
-        parser_(from.whole.header, meshes_, {kMemory, 0}) {}
+        parser_(from.whole.header, meshes_, {kAmpleMemory, 0}) {}
 
   std::optional<Error> rig(const Payload& payload) {
     BitReader r(payload);
@@ -71,10 +72,6 @@ class Reading {
   SkinnedGofParser parser_;
 };
 
-std::string text_of(const std::optional<Error>& error) {
-  return error ? std::string(error->rule) + " " + error->element : "no error";
-}
-
 SkinnedGofPayloads payloads_of_rig(const SplitSkinnedGof& from) {
   return write_shared_rig(*from.rig, from.rig_idx, from.whole.coded_mesh(), from.whole.header);
 }
@@ -87,8 +84,8 @@ RigSlots slots_with(const SplitSkinnedGof& from) {
   return rigs;
 }
 
-void expect_round_trip(const SplitSkinnedGof& from) {
-  Reading rig(from);
+void expect_rig_round_trip(const SplitSkinnedGof& from) {
+  RigReading rig(from);
   auto error = rig.all(payloads_of_rig(from), true);
   ASSERT_FALSE(error) << text_of(error);
   EXPECT_EQ(rig.parser().rig_idx(), from.rig_idx);
@@ -96,7 +93,7 @@ void expect_round_trip(const SplitSkinnedGof& from) {
   parsed.influences = complete_influences(rig.meshes()[parsed.prediction], parsed);
   EXPECT_TRUE(*from.rig == parsed);
 
-  Reading gof(from, slots_with(from));
+  RigReading gof(from, slots_with(from));
   error = gof.all(payloads_of_tracks(from), false);
   ASSERT_FALSE(error) << text_of(error);
   const SkinnedGof tracks = gof.parser().finish();
@@ -109,7 +106,7 @@ TEST(SharedRigRoundTrip, RandomLegalRigsAndGofsComeBack) {
   for (unsigned seed = 1; seed <= 1500; ++seed) {
     SCOPED_TRACE(seed);
     const SplitSkinnedGof from(seed, {});
-    expect_round_trip(from);
+    expect_rig_round_trip(from);
     if (HasFailure()) return;
     if (from.tracks.group_end.size() > 1) ++with_local_groups;
     for (const Trajectory& t : from.tracks.trajectories) {
@@ -123,14 +120,14 @@ TEST(SharedRigRoundTrip, RandomLegalRigsAndGofsComeBack) {
 TEST(SharedRigRoundTrip, TheSmallestAndManyGroupsComeBack) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
-    expect_round_trip(
+    expect_rig_round_trip(
         SplitSkinnedGof(seed, {.max_vertices = 1, .max_frames = 1, .max_bones = 1}));
   }
   for (unsigned seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
-    expect_round_trip(SplitSkinnedGof(
+    expect_rig_round_trip(SplitSkinnedGof(
         seed, {.max_vertices = 8, .max_groups = kMaxComponentGroups, .max_components = 2}));
-    expect_round_trip(SplitSkinnedGof(seed, {.max_bones = kLevels[0].max_clusters}));
+    expect_rig_round_trip(SplitSkinnedGof(seed, {.max_bones = kLevels[0].max_clusters}));
   }
 }
 
@@ -155,11 +152,11 @@ TEST(SharedRigParser, ProperPrefixesFailOrParse) {
         const Payload all = last;
         for (std::size_t n = 0; n < all.size(); ++n) {
           last = Payload(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n));
-          ++(Reading(from, slots_with(from)).all(cut, is_rig) ? refused : parsed);
+          ++(RigReading(from, slots_with(from)).all(cut, is_rig) ? refused : parsed);
         }
         last = all;
         last.push_back(0);
-        EXPECT_TRUE(Reading(from, slots_with(from)).all(cut, is_rig));
+        EXPECT_TRUE(RigReading(from, slots_with(from)).all(cut, is_rig));
       }
     }
   }
@@ -178,13 +175,13 @@ TEST(SharedRigParser, RefusesSlicesInAnotherOrderOrTwice) {
       SkinnedGofPayloads changed = good;
       changed.slices.insert(changed.slices.begin() + static_cast<std::ptrdiff_t>(i),
                             good.slices[i]);
-      EXPECT_EQ(text_of(Reading(from, slots_with(from)).all(changed, false)),
+      EXPECT_EQ(text_of(RigReading(from, slots_with(from)).all(changed, false)),
                 "R-SLI-02 slice_unit");
       ++tried;
       if (i == 0) continue;
       changed = good;
       std::swap(changed.slices[i - 1], changed.slices[i]);
-      EXPECT_EQ(text_of(Reading(from, slots_with(from)).all(changed, false)),
+      EXPECT_EQ(text_of(RigReading(from, slots_with(from)).all(changed, false)),
                 "R-SLI-02 slice_unit");
     }
   }
@@ -193,7 +190,7 @@ TEST(SharedRigParser, RefusesSlicesInAnotherOrderOrTwice) {
 
 TEST(SharedRigParser, RefusesTracksWithoutTheirRig) {
   const SplitSkinnedGof from(1, {});
-  const auto error = Reading(from).tracks(payloads_of_tracks(from).first);
+  const auto error = RigReading(from).tracks(payloads_of_tracks(from).first);
   EXPECT_EQ(text_of(error), "R-MOD-01 rig_idx");
   EXPECT_EQ(error->code, Errc::kUnsupported);
 }

@@ -12,15 +12,15 @@
 #include "common/codec/bits/bit_reader.h"
 #include "common/codec/kinds/skinned/recon/skinned_recon.h"
 #include "common/testing/random_skinned_gof.h"
+#include "common/testing/residual_bound.h"
+#include "conformance/testing/ample_memory.h"
+#include "conformance/testing/error_text.h"
 #include "decoder/codec/kinds/skinned/parse/parse_skinned_gof.h"
 #include "decoder/codec/parse/parse_gof_header.h"
 #include "encoder/codec/write/write_skinned_gof.h"
 
 namespace rlpc {
 namespace {
-
-constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
-constexpr auto kMax = static_cast<std::int32_t>(kMaxResidual);
 
 using Payload = std::vector<std::uint8_t>;
 
@@ -30,9 +30,9 @@ SkinnedGofPayloads payloads_of(const RandomSkinnedGof& from) {
 }
 
 // Parses one stream, as a decoder does.
-class Reading {
+class SkinnedReading {
  public:
-  explicit Reading(const RandomSkinnedGof& from, std::uint64_t max_memory = kMemory)
+  explicit SkinnedReading(const RandomSkinnedGof& from, std::uint64_t max_memory = kAmpleMemory)
       : from_(from),
         meshes_(from.topology, from.triangles),
         parser_(from.header, meshes_, {max_memory, 0}) {}
@@ -70,12 +70,8 @@ class Reading {
   SkinnedGofParser parser_;
 };
 
-std::string text_of(const std::optional<Error>& error) {
-  return error ? std::string(error->rule) + " " + error->element : "no error";
-}
-
 // Compares the parts first: they show where a difference is.
-void expect_equal(const SkinnedGof& a, const SkinnedGof& b) {
+void expect_equal_skinned(const SkinnedGof& a, const SkinnedGof& b) {
   ASSERT_EQ(a.bones.size(), b.bones.size());
   for (std::size_t i = 0; i < a.bones.size(); ++i) EXPECT_TRUE(a.bones[i] == b.bones[i]) << i;
   ASSERT_EQ(a.trajectories.size(), b.trajectories.size());
@@ -90,18 +86,18 @@ void expect_equal(const SkinnedGof& a, const SkinnedGof& b) {
   EXPECT_TRUE(a == b);
 }
 
-void expect_round_trip(const RandomSkinnedGof& from) {
+void expect_skinned_round_trip(const RandomSkinnedGof& from) {
   const SkinnedGofPayloads payloads = payloads_of(from);
-  Reading reading(from);
+  SkinnedReading reading(from);
   const auto error = reading.all(payloads.first, payloads.slices);
   ASSERT_FALSE(error) << text_of(error);
   SkinnedGof parsed = reading.finish();
   parsed.influences = complete_influences(reading.mesh_of(parsed), parsed);
-  expect_equal(from.gof, parsed);
+  expect_equal_skinned(from.gof, parsed);
 }
 
 // Reconstructs the parsed GOF and checks that positions are within their range.
-void expect_frames_in_range(Reading& reading, int position_bits) {
+void expect_frames_in_range(SkinnedReading& reading, int position_bits) {
   const SkinnedGof gof = reading.finish();
   const OrderedMesh& mesh = reading.mesh_of(gof);
   const SkinnedRecon recon(mesh, gof, position_bits);
@@ -118,7 +114,7 @@ void expect_frames_in_range(Reading& reading, int position_bits) {
 TEST(SkinnedGofRoundTrip, RandomLegalGofsComeBack) {
   for (unsigned seed = 1; seed <= 2000; ++seed) {
     SCOPED_TRACE(seed);
-    expect_round_trip(RandomSkinnedGof(seed, {}));
+    expect_skinned_round_trip(RandomSkinnedGof(seed, {}));
     if (HasFailure()) return;
   }
 }
@@ -126,7 +122,7 @@ TEST(SkinnedGofRoundTrip, RandomLegalGofsComeBack) {
 TEST(SkinnedGofRoundTrip, OneVertexOneFrameAndOneBoneAreEnough) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
-    expect_round_trip(
+    expect_skinned_round_trip(
         RandomSkinnedGof(seed, {.max_vertices = 1, .max_frames = 1, .max_bones = 1}));
   }
 }
@@ -134,11 +130,11 @@ TEST(SkinnedGofRoundTrip, OneVertexOneFrameAndOneBoneAreEnough) {
 TEST(SkinnedGofRoundTrip, LargerGofsComeBack) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
-    expect_round_trip(RandomSkinnedGof(seed, {.max_vertices = 2000, .max_groups = 2}));
-    expect_round_trip(RandomSkinnedGof(seed, {.max_bones = kLevels[0].max_clusters}));
-    expect_round_trip(
+    expect_skinned_round_trip(RandomSkinnedGof(seed, {.max_vertices = 2000, .max_groups = 2}));
+    expect_skinned_round_trip(RandomSkinnedGof(seed, {.max_bones = kLevels[0].max_clusters}));
+    expect_skinned_round_trip(
         RandomSkinnedGof(seed, {.max_vertices = 8, .max_frames = kLevels[0].max_gof_frames}));
-    expect_round_trip(RandomSkinnedGof(
+    expect_skinned_round_trip(RandomSkinnedGof(
         seed, {.max_vertices = 8, .max_groups = kMaxComponentGroups, .max_components = 2}));
   }
 }
@@ -152,7 +148,7 @@ TEST(SkinnedGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
       int count = 0;
       const auto jump = [&](std::int32_t& x) {
         ++count;
-        x = count / period % 2 == 0 ? 0 : count % 2 == 0 ? kMax : -kMax;
+        x = count / period % 2 == 0 ? 0 : count % 2 == 0 ? kResidualBound : -kResidualBound;
       };
       const auto jump_track = [&](TrackResiduals& residuals) {
         for (Vec3i& r : residuals) std::for_each(r.begin(), r.end(), jump);
@@ -174,7 +170,7 @@ TEST(SkinnedGofRoundTrip, ResidualsThatJumpBetweenTheirBoundsComeBack) {
           for (std::size_t k = 0; k < size; ++k) jump(residuals[v * size + k]);
         }
       }
-      expect_round_trip(from);
+      expect_skinned_round_trip(from);
     }
   }
 }
@@ -203,7 +199,7 @@ TEST(SkinnedGofParser, ProperPrefixesFailOrDecode) {
           payloads.slices.begin() +
               static_cast<std::ptrdiff_t>(std::max<std::size_t>(i, 1) - 1));
       for (std::size_t n = 0; n < whole.size(); ++n) {
-        Reading reading(from);
+        SkinnedReading reading(from);
         if (i > 0) {
           ASSERT_FALSE(reading.all(payloads.first, before));
         }
@@ -226,10 +222,10 @@ TEST(SkinnedGofParser, ABytePastTheEndFails) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
     const RandomSkinnedGof from(seed, {});
     SkinnedGofPayloads payloads = payloads_of(from);
-    Reading reading(from);
+    SkinnedReading reading(from);
     ASSERT_FALSE(reading.gof(payloads.first));
     payloads.first.push_back(0);
-    ASSERT_TRUE(Reading(from).gof(payloads.first)) << seed;
+    ASSERT_TRUE(SkinnedReading(from).gof(payloads.first)) << seed;
     if (payloads.slices.empty()) continue;
     payloads.slices[0].push_back(0);
     ASSERT_TRUE(reading.slice(payloads.slices[0])) << seed;
@@ -247,7 +243,7 @@ TEST(SkinnedGofParser, SlicesCanBeLeftOutWhereNothingNeedsThem) {
     const SkinnedGofPayloads payloads = payloads_of(from);
     std::mt19937 random(seed);
     std::vector<std::uint32_t> kept(from.gof.slice_layers.size(), 0);
-    Reading reading(from);
+    SkinnedReading reading(from);
     ASSERT_FALSE(reading.gof(payloads.first));
     bool is_legal = true;
     std::size_t next = 0;
@@ -318,7 +314,7 @@ TEST(SkinnedGofParser, TemporalLayersCanBeLeftOutWhereNothingNeedsThem) {
     if (from.gof.num_temporal_layers == 1) continue;
     const SkinnedGofPayloads payloads = payloads_of(from);
     std::mt19937 random(seed);
-    Reading reading(from);
+    SkinnedReading reading(from);
     ASSERT_FALSE(reading.gof(payloads.first));
     std::vector<std::uint32_t> kept(from.gof.temporal_layers.size(), 0);
     bool is_legal = true;
@@ -368,7 +364,7 @@ TEST(SkinnedGofParser, RefusesSlicesInAnotherOrder) {
     for (std::size_t i = 0; i + 1 < payloads.slices.size(); ++i) {
       std::vector<Payload> slices = payloads.slices;
       std::swap(slices[i], slices[i + 1]);
-      const auto error = Reading(from).all(payloads.first, slices);
+      const auto error = SkinnedReading(from).all(payloads.first, slices);
       ASSERT_TRUE(error) << seed << " " << i;
       EXPECT_EQ(std::string(error->rule), "R-SLI-02");
       ++swapped;
@@ -389,7 +385,7 @@ TEST(SkinnedGofParser, SurvivesDamage) {
     const std::size_t which = random() % (payloads.slices.size() + 1);
     Payload& payload = which == 0 ? payloads.first : payloads.slices[which - 1];
     payload[random() % payload.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
-    Reading reading(from);
+    SkinnedReading reading(from);
     if (reading.all(payloads.first, payloads.slices)) {
       ++refused;
       continue;
@@ -405,7 +401,7 @@ TEST(SkinnedGofParser, SurvivesDamage) {
 TEST(SkinnedGofParser, StopsAtTheCallersMemory) {
   const RandomSkinnedGof from(1, {});
   const SkinnedGofPayloads payloads = payloads_of(from);
-  const auto error = Reading(from, 100).gof(payloads.first);
+  const auto error = SkinnedReading(from, 100).gof(payloads.first);
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code, Errc::kLimitExceeded);
 }

@@ -60,7 +60,7 @@ Move changing(double from) {
   };
 }
 
-EncoderSettings settings_of(std::uint32_t gof_frames, std::uint32_t threads = 1) {
+EncoderSettings rig_settings(std::uint32_t gof_frames, std::uint32_t threads = 1) {
   EncoderSettings settings;
   settings.profile = Profile::kHigh;
   settings.preset = Preset::kFast;
@@ -71,8 +71,8 @@ EncoderSettings settings_of(std::uint32_t gof_frames, std::uint32_t threads = 1)
   return settings;
 }
 
-StreamBytes stream_of(FrameSource& source, const EncoderSettings& settings,
-                      std::uint32_t held) {
+StreamBytes stream_by_frames(FrameSource& source, const EncoderSettings& settings,
+                             std::uint32_t held) {
   const Encoded encoded = encode_frames(source, settings, held);
   EXPECT_TRUE(encoded.report.target_met);
   if (settings.target.kind == Target::kKg) {
@@ -87,13 +87,13 @@ std::size_t count(const StreamBytes& bytes, UnitType type) {
       units.begin(), units.end(), [&](const UnitPlace& unit) { return unit.type == type; }));
 }
 
-using Frames = std::vector<std::vector<std::int32_t>>;
+using DecodedFrames = std::vector<std::vector<std::int32_t>>;
 
 // Decodes all frames and compares the hash of each.
-Frames decode(const StreamBytes& bytes) {
+DecodedFrames decode_with_hashes(const StreamBytes& bytes) {
   auto decoder = Decoder::open(memory_source(bytes));
   if (!decoder) throw std::logic_error("the stream does not open");
-  Frames frames;
+  DecodedFrames frames;
   std::vector<std::int32_t> positions(3 * std::size_t{decoder->header().num_vertices});
   for (auto more = decoder->next_frame(positions); more && *more;
        more = decoder->next_frame(positions)) {
@@ -107,45 +107,45 @@ Frames decode(const StreamBytes& bytes) {
 TEST(SpanRigs, RepeatedMotionHasOneRig) {
   MemoryFrames source = moving_tube(192, bent);
   MemoryFrames first = moving_tube(64, bent);
-  const StreamBytes whole = stream_of(source, settings_of(32), 64);
+  const StreamBytes whole = stream_by_frames(source, rig_settings(32), 64);
   EXPECT_EQ(count(whole, UnitType::kRig), 1U);
   EXPECT_EQ(count(whole, UnitType::kGof), 6U);
   // This is much less than a rig for each span takes.
   EXPECT_LT(whole.size(),
-            2.2 * static_cast<double>(stream_of(first, settings_of(32), 64).size()));
-  EXPECT_EQ(decode(whole).size(), 192U);
+            2.2 * static_cast<double>(stream_by_frames(first, rig_settings(32), 64).size()));
+  EXPECT_EQ(decode_with_hashes(whole).size(), 192U);
 }
 
 // A span of a single GOF has its own vertices if nothing follows, otherwise a shared rig.
 TEST(SpanRigs, SpansMayBeSingleGofs) {
   MemoryFrames source = moving_tube(96, bent);
-  const StreamBytes bytes = stream_of(source, settings_of(32), 32);
+  const StreamBytes bytes = stream_by_frames(source, rig_settings(32), 32);
   EXPECT_EQ(count(bytes, UnitType::kRig), 1U);
   EXPECT_EQ(count(bytes, UnitType::kGof), 3U);
-  EXPECT_EQ(decode(bytes).size(), 96U);
+  EXPECT_EQ(decode_with_hashes(bytes).size(), 96U);
 }
 
 // Takes little more than separate sequences of the parts.
 TEST(SpanRigs, ChangedMotionIsCodedAsWell) {
   MemoryFrames source = moving_tube(128, changing(64.0));
   MemoryFrames first = moving_tube(64, bent);
-  const StreamBytes whole = stream_of(source, settings_of(64), 64);
-  const StreamBytes before = stream_of(first, settings_of(64), 64);
+  const StreamBytes whole = stream_by_frames(source, rig_settings(64), 64);
+  const StreamBytes before = stream_by_frames(first, rig_settings(64), 64);
   MemoryFrames late = moving_tube(64, [](double x, double y, double z, double f) {
     return changing(0.0)(x, y, z, f + 64.0);
   });
-  const StreamBytes after = stream_of(late, settings_of(64), 64);
+  const StreamBytes after = stream_by_frames(late, rig_settings(64), 64);
   EXPECT_LT(whole.size(), before.size() + after.size());
-  EXPECT_EQ(decode(whole).size(), 128U);
+  EXPECT_EQ(decode_with_hashes(whole).size(), 128U);
 }
 
 TEST(SpanRigs, SeeksReachLaterSpans) {
   MemoryFrames source = moving_tube(128, changing(96.0));
   // Enough GOFs for an index.
-  const StreamBytes bytes = stream_of(source, settings_of(4), 32);
+  const StreamBytes bytes = stream_by_frames(source, rig_settings(4), 32);
   EXPECT_GE(count(bytes, UnitType::kGofIndex), 1U);
   EXPECT_LT(count(bytes, UnitType::kRig), 4U);
-  const Frames frames = decode(bytes);
+  const DecodedFrames frames = decode_with_hashes(bytes);
   std::vector<std::int32_t> positions(frames[0].size());
   for (const std::uint32_t f : {127U, 40U, 65U, 3U, 100U, 31U, 32U}) {
     auto decoder = Decoder::open(memory_source(bytes));
@@ -158,16 +158,16 @@ TEST(SpanRigs, SeeksReachLaterSpans) {
 
 TEST(SpanRigs, ThreadsGiveTheSameBytes) {
   MemoryFrames source = moving_tube(96, changing(50.0));
-  EXPECT_EQ(stream_of(source, settings_of(16, 1), 32),
-            stream_of(source, settings_of(16, 2), 32));
+  EXPECT_EQ(stream_by_frames(source, rig_settings(16, 1), 32),
+            stream_by_frames(source, rig_settings(16, 2), 32));
 }
 
 TEST(SpanRigs, MeetOtherTargets) {
   MemoryFrames source = moving_tube(96, changing(70.0));
   for (const Target& target : {Target{Target::kMaxError, 0.01}, Target{Target::kBpvf, 2.0}}) {
-    EncoderSettings settings = settings_of(32);
+    EncoderSettings settings = rig_settings(32);
     settings.target = target;
-    EXPECT_EQ(decode(stream_of(source, settings, 32)).size(), 96U);
+    EXPECT_EQ(decode_with_hashes(stream_by_frames(source, settings, 32)).size(), 96U);
   }
 }
 
@@ -175,7 +175,7 @@ TEST(SpanRigs, MeetOtherTargets) {
 class LittleMemory : public testing::Test {
  protected:
   static EncoderSettings settings(std::uint32_t threads) {
-    EncoderSettings settings = settings_of(100, threads);
+    EncoderSettings settings = rig_settings(100, threads);
     settings.max_memory_bytes = std::uint64_t{40} << 20;
     return settings;
   }
@@ -190,7 +190,7 @@ TEST_F(LittleMemory, LaterSpansUseTheRig) {
   EXPECT_LE(report.metrics.kg_error_percent, 0.3);
   EXPECT_EQ(count(bytes, UnitType::kRig), 1U);
   EXPECT_GT(count(bytes, UnitType::kGof), 2U);
-  EXPECT_EQ(decode(bytes).size(), 600U);
+  EXPECT_EQ(decode_with_hashes(bytes).size(), 600U);
   EXPECT_EQ(bytes, encode_to_memory(source_, settings(2)));
 }
 

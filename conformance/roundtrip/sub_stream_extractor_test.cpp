@@ -17,8 +17,6 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kAll = SliceCut::kAll;
-
 DecoderOptions cut_options(const SliceCut& cut) {
   DecoderOptions options;
   options.cut = cut;
@@ -27,8 +25,8 @@ DecoderOptions cut_options(const SliceCut& cut) {
 
 std::vector<SliceCut> some_cuts() {
   std::vector<SliceCut> cuts;
-  for (const std::uint32_t components : {0U, 1U, 2U, 3U, 4U, 5U, 6U, kAll}) {
-    for (const std::uint32_t layers : {0U, 1U, 2U, 100U, kAll}) {
+  for (const std::uint32_t components : {0U, 1U, 2U, 3U, 4U, 5U, 6U, SliceCut::kAll}) {
+    for (const std::uint32_t layers : {0U, 1U, 2U, 100U, SliceCut::kAll}) {
       cuts.push_back({components, layers});
     }
   }
@@ -54,7 +52,8 @@ TEST(LayerGroups, StayWhole) {
   const std::vector<std::uint32_t> sizes{2, 1, 4};
   const std::vector<std::uint32_t> expected{1, 1, 1, 2, 2, 2, 2, 3, 3};
   for (std::uint32_t layers = 0; layers < expected.size(); ++layers) {
-    EXPECT_EQ(layer_groups_that_stay(sizes, {kAll, layers}), expected[layers]) << layers;
+    EXPECT_EQ(layer_groups_that_stay(sizes, {SliceCut::kAll, layers}), expected[layers])
+        << layers;
   }
   EXPECT_EQ(layer_groups_that_stay(sizes, {}), 3U);
 }
@@ -75,10 +74,11 @@ TEST(LayerGroups, StayIfTheyAreNeeded) {
 // layer; the second has one trajectory and one layer group.
 TEST(SubStreamExtractor, LeavesOutWholeGroups) {
   const StreamBytes stream = sliced_stream();
-  EXPECT_EQ(places_of(cut_stream(stream, {0, kAll})), (Places{{{0, 0}, {0, 1}}, {{0, 0}}}));
-  EXPECT_EQ(places_of(cut_stream(stream, {2, kAll})),
+  EXPECT_EQ(places_of(cut_stream(stream, {0, SliceCut::kAll})),
+            (Places{{{0, 0}, {0, 1}}, {{0, 0}}}));
+  EXPECT_EQ(places_of(cut_stream(stream, {2, SliceCut::kAll})),
             (Places{{{0, 0}, {0, 1}, {1, 0}, {1, 1}}, {{0, 0}, {1, 0}}}));
-  EXPECT_EQ(places_of(cut_stream(stream, {kAll, 1})),
+  EXPECT_EQ(places_of(cut_stream(stream, {SliceCut::kAll, 1})),
             (Places{{{0, 0}, {1, 0}, {2, 0}}, {{0, 0}, {1, 0}}}));
   EXPECT_EQ(places_of(cut_stream(stream, {1, 1})),
             (Places{{{0, 0}, {1, 0}}, {{0, 0}, {1, 0}}}));
@@ -110,8 +110,10 @@ TEST(SubStreamExtractor, WritesConformingStreamsThatDecodeAsIfCut) {
       EXPECT_EQ(cut_stream(out, cut), out);
     }
   }
-  EXPECT_NE(decode_all(cut_stream(sliced_stream(), {kAll, 1})), decode_all(sliced_stream()));
-  EXPECT_NE(decode_all(cut_stream(sliced_stream(), {1, kAll})), decode_all(sliced_stream()));
+  EXPECT_NE(decode_all(cut_stream(sliced_stream(), {SliceCut::kAll, 1})),
+            decode_all(sliced_stream()));
+  EXPECT_NE(decode_all(cut_stream(sliced_stream(), {1, SliceCut::kAll})),
+            decode_all(sliced_stream()));
 }
 
 TEST(SubStreamExtractor, CopiesTheOtherUnits) {
@@ -201,8 +203,8 @@ TEST(CutDecoding, ReportsWhetherAnythingWasDropped) {
     EXPECT_TRUE(decoder->parse_rest());
     return decoder->was_cut();
   };
-  EXPECT_TRUE(was_cut(sliced_stream(), {2, kAll}));
-  EXPECT_TRUE(was_cut(sliced_stream(), {kAll, 1}));
+  EXPECT_TRUE(was_cut(sliced_stream(), {2, SliceCut::kAll}));
+  EXPECT_TRUE(was_cut(sliced_stream(), {SliceCut::kAll, 1}));
   EXPECT_FALSE(was_cut(sliced_stream(), {3, 100}));
   EXPECT_FALSE(was_cut(sliced_stream(), {}));
   EXPECT_FALSE(was_cut(rich_stream(), {0, 1}));
@@ -220,16 +222,10 @@ std::string rule_of(const StreamBytes& stream, const SliceCut& cut) {
   }
 }
 
-std::vector<UnitPlace> units_of_type(const StreamBytes& stream, UnitType type) {
-  std::vector<UnitPlace> units = units_of(stream);
-  std::erase_if(units, [type](const UnitPlace& unit) { return unit.type != type; });
-  return units;
-}
-
 TEST(CutDecoding, ComparesHashesOfGofsThatAreWhole) {
   const StreamBytes stream = sliced_stream();
   const auto hashes = units_of_type(stream, UnitType::kGofHash);
-  const SliceCut first_only{1, kAll};  // the second GOF has no more
+  const SliceCut first_only{1, SliceCut::kAll};  // the second GOF has no more
   for (std::size_t gof = 0; gof < 2; ++gof) {
     StreamBytes wrong = stream;
     wrong[hashes[gof].payload() + 3] ^= 1;

@@ -16,7 +16,7 @@
 namespace rlpc {
 namespace {
 
-constexpr std::uint32_t kFrames = 60;
+constexpr std::uint32_t kLayeredFrames = 60;
 
 EncoderSettings settings_with(std::uint32_t layers, std::uint32_t gof_frames) {
   EncoderSettings settings;
@@ -29,22 +29,19 @@ EncoderSettings settings_with(std::uint32_t layers, std::uint32_t gof_frames) {
   return settings;
 }
 
-Encoded encoded(const EncoderSettings& settings) {
-  MemoryFrames source = bending_tube(16, kFrames);
-  Encoded result;
-  result.bytes = encode_to_memory(source, settings, &result.report);
-  EXPECT_FALSE(result.bytes.empty());
-  return result;
+Encoded encoded_layers(const EncoderSettings& settings) {
+  MemoryFrames source = bending_tube(16, kLayeredFrames);
+  return encode_with_report(source, settings);
 }
 
 Encoded encoded_by_frames(const EncoderSettings& settings) {
-  MemoryFrames source = bending_tube(16, kFrames);
+  MemoryFrames source = bending_tube(16, kLayeredFrames);
   return encode_frames(source, settings);
 }
 
 // Returns the KG error of a stream in the order of the input.
 double kg_error(const StreamBytes& stream) {
-  MemoryFrames source = bending_tube(16, kFrames);
+  MemoryFrames source = bending_tube(16, kLayeredFrames);
   auto decoder = Decoder::open(memory_source(stream));
   EXPECT_TRUE(decoder);
   MetricsAccumulator metrics(source.num_vertices());
@@ -83,28 +80,29 @@ void expect_reported_cuts(const Encoded& whole, std::uint32_t layers) {
     DecoderOptions options;
     options.cut = cut;
     EXPECT_EQ(decode_all(out), decode_all(whole.bytes, options));
-    EXPECT_EQ(decode_all(out).size(), kFrames);
+    EXPECT_EQ(decode_all(out).size(), kLayeredFrames);
   }
 }
 
 TEST(TemporalLayers, CutsAreAsReported) {
   for (const std::uint32_t layers : {2U, 3U}) {
     SCOPED_TRACE(layers);
-    const Encoded whole = encoded(settings_with(layers, EncoderSettings::kWholeSequence));
+    const Encoded whole =
+        encoded_layers(settings_with(layers, EncoderSettings::kWholeSequence));
     EXPECT_TRUE(whole.report.target_met);
     expect_reported_cuts(whole, layers);
   }
 }
 
 TEST(TemporalLayers, CutsOfGofsThatShareARigAreAsReported) {
-  const Encoded whole = encoded(settings_with(2, 15));
+  const Encoded whole = encoded_layers(settings_with(2, 15));
   EXPECT_FALSE(summary_of(whole.bytes).rigs.empty());
   expect_reported_cuts(whole, 2);
 }
 
 // The stream has an index, whose offsets change.
 TEST(TemporalLayers, CutsOfManyGofsAreAsReported) {
-  const Encoded whole = encoded(settings_with(2, 3));
+  const Encoded whole = encoded_layers(settings_with(2, 3));
   EXPECT_EQ(whole.report.num_gofs, 20U);
   expect_reported_cuts(whole, 2);
 }
@@ -114,7 +112,7 @@ TEST(TemporalLayers, CutsOfFramesThatComeOneByOneAreAsReported) {
 }
 
 TEST(TemporalLayers, AreOffByDefault) {
-  const Encoded plain = encoded(settings_with(1, 20));
+  const Encoded plain = encoded_layers(settings_with(1, 20));
   EXPECT_TRUE(plain.report.temporal_cuts.empty());
   for (const GofSummary& gof : summary_of(plain.bytes).gofs) {
     EXPECT_EQ(gof.num_temporal_layers(), 1U);
@@ -123,7 +121,7 @@ TEST(TemporalLayers, AreOffByDefault) {
 }
 
 TEST(TemporalLayers, AreInEveryGof) {
-  const Encoded whole = encoded(settings_with(3, 20));
+  const Encoded whole = encoded_layers(settings_with(3, 20));
   for (const GofSummary& gof : summary_of(whole.bytes).gofs) {
     EXPECT_EQ(gof.num_temporal_layers(), 3U);
     EXPECT_EQ(gof.figure("num_temporal_layers"), 3U);
@@ -132,9 +130,9 @@ TEST(TemporalLayers, AreInEveryGof) {
 
 TEST(TemporalLayers, DoNotDependOnThreads) {
   EncoderSettings settings = settings_with(2, 15);
-  const Encoded one = encoded(settings);
+  const Encoded one = encoded_layers(settings);
   settings.threads = 3;
-  const Encoded three = encoded(settings);
+  const Encoded three = encoded_layers(settings);
   EXPECT_EQ(one.bytes, three.bytes);
   EXPECT_EQ(one.report.temporal_cuts[0].bytes, three.report.temporal_cuts[0].bytes);
   EXPECT_EQ(one.report.temporal_cuts[0].kg_error_percent,

@@ -32,11 +32,6 @@ inline std::vector<float> frame_of(FrameSource& source, std::uint32_t f) {
   return xyz;
 }
 
-struct Encoded {
-  StreamBytes bytes;
-  EncodeReport report;
-};
-
 // Encodes frame by frame. held: max_held_frames; one GOF by default.
 inline Encoded encode_frames(FrameSource& source, const EncoderSettings& settings,
                              std::uint32_t held = 1) {

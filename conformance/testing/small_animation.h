@@ -116,6 +116,22 @@ inline StreamBytes encode_to_memory(FrameSource& source, const EncoderSettings& 
   return bytes;
 }
 
+struct Encoded {
+  StreamBytes bytes;
+  EncodeReport report;
+};
+
+// Throws, which fails the test, if the encoder reports an error.
+inline Encoded encode_with_report(FrameSource& source, const EncoderSettings& settings) {
+  Encoded out;
+  out.bytes = encode_to_memory(source, settings, &out.report);
+  if (out.bytes.empty()) throw std::logic_error("the encoder reports an error");
+  return out;
+}
+
+// A ByteSink for streams that are not needed.
+inline bool discard(std::span<const std::uint8_t> /*bytes*/) { return true; }
+
 // Settings that use all syntax of the Baseline profile: clusters with local frames, vertex
 // order, metadata, a hash for each frame. Streams of 30 vertices and 6 frames have 2 GOFs.
 inline EncoderSettings rich_settings() {
@@ -173,6 +189,12 @@ inline std::vector<UnitPlace> units_of(const StreamBytes& bytes) {
     units.push_back(unit);
     at = unit.end();
   }
+  return units;
+}
+
+inline std::vector<UnitPlace> units_of_type(const StreamBytes& bytes, UnitType type) {
+  std::vector<UnitPlace> units = units_of(bytes);
+  std::erase_if(units, [type](const UnitPlace& unit) { return unit.type != type; });
   return units;
 }
 

@@ -25,11 +25,6 @@ inline Ids ids(const ValidationReport& report) {
 }
 inline Ids ids(const StreamBytes& bytes) { return ids(validate(bytes)); }
 
-inline std::vector<UnitPlace> units_of_type(const StreamBytes& bytes, UnitType type) {
-  std::vector<UnitPlace> units = units_of(bytes);
-  std::erase_if(units, [&](const UnitPlace& u) { return u.type != type; });
-  return units;
-}
 inline StreamBytes with_payload_of(const StreamBytes& bytes, UnitType type,
                                    const Bytes& payload) {
   return with_payload(bytes, units_of_type(bytes, type).at(0), payload);

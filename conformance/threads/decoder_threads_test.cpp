@@ -15,7 +15,7 @@
 namespace rlpc {
 namespace {
 
-struct Outcome {
+struct DecoderOutcome {
   std::vector<std::vector<std::int32_t>> frames;
   std::vector<std::string> metadata;  // metadata known after each frame
   bool complete = false;
@@ -24,7 +24,7 @@ struct Outcome {
   std::string element;
   std::uint64_t bit_pos = 0;
 
-  bool operator==(const Outcome&) const = default;
+  bool operator==(const DecoderOutcome&) const = default;
 
   void fail(const Error& error) {
     code = error.code;
@@ -40,8 +40,8 @@ DecoderOptions with_threads(std::uint32_t threads) {
   return options;
 }
 
-Outcome decode(const StreamBytes& stream, const DecoderOptions& options) {
-  Outcome outcome;
+DecoderOutcome decode(const StreamBytes& stream, const DecoderOptions& options) {
+  DecoderOutcome outcome;
   auto decoder = Decoder::open(memory_source(StreamBytes(stream)), options);
   if (!decoder) {
     outcome.fail(decoder.error());
@@ -88,9 +88,9 @@ class Threads : public testing::TestWithParam<StreamBytes (*)()> {
   }
 
   // Expects the same outcome with 2, 3 and 9 threads as with one.
-  static Outcome expect_the_same(const StreamBytes& stream, DecoderOptions options) {
+  static DecoderOutcome expect_the_same(const StreamBytes& stream, DecoderOptions options) {
     options.threads = 1;
-    Outcome outcome = decode(stream, options);
+    DecoderOutcome outcome = decode(stream, options);
     for (const std::uint32_t threads : {2U, 3U, 9U}) {
       options.threads = threads;
       EXPECT_TRUE(decode(stream, options) == outcome) << threads << " threads";
@@ -99,7 +99,7 @@ class Threads : public testing::TestWithParam<StreamBytes (*)()> {
   }
 
   StreamBytes stream_;
-  Outcome whole_;
+  DecoderOutcome whole_;
 };
 
 TEST_P(Threads, GiveTheSameFrames) { expect_the_same(stream_, {}); }
@@ -159,7 +159,7 @@ TEST_P(Threads, GiveTheSameErrorForTooLittleMemory) {
     SCOPED_TRACE(bytes);
     DecoderOptions options;
     options.limits.max_memory_bytes = bytes;
-    const Outcome outcome = expect_the_same(stream_, options);
+    const DecoderOutcome outcome = expect_the_same(stream_, options);
     if (outcome.code == Errc::kLimitExceeded && !outcome.complete) ++too_little;
   }
   EXPECT_GT(too_little, 0);
@@ -212,7 +212,7 @@ TEST(ThreadsOfACut, LeaveAttributesWhole) {
   ASSERT_TRUE(wanted);
   DecoderOptions options;
   options.cut.max_components = 1;
-  const Outcome cut = decode(stream, options);
+  const DecoderOutcome cut = decode(stream, options);
   ASSERT_EQ(cut.frames.size(), 45U);
   ASSERT_NE(cut.frames, decode(stream, {}).frames);
   options.threads = 4;

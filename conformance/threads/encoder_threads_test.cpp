@@ -57,15 +57,15 @@ class Tube final : public FrameSource {
   std::atomic<bool> is_reading_ = false;
 };
 
-struct Outcome {
+struct EncoderOutcome {
   InputResult<EncodeReport> report = InputError{};
   Bytes stream;
   std::vector<double> progress;
 };
 
-Outcome encoded(FrameSource& source, EncoderSettings settings, std::uint32_t threads) {
+EncoderOutcome encoded(FrameSource& source, EncoderSettings settings, std::uint32_t threads) {
   settings.threads = threads;
-  Outcome outcome;
+  EncoderOutcome outcome;
   outcome.report = encode(
       source, settings,
       [&](std::span<const std::uint8_t> bytes) {
@@ -101,11 +101,11 @@ TEST_P(EncoderThreads, GiveTheSameBytes) {
   EncoderSettings settings = settings_of(c.profile, c.preset, c.gof_frames);
   settings.target = c.target;
   Tube source(36, c.noise);
-  const Outcome one = encoded(source, settings, 1);
+  const EncoderOutcome one = encoded(source, settings, 1);
   ASSERT_TRUE(one.report);
   EXPECT_GE(one.report->num_gofs, (36 + c.gof_frames - 1) / c.gof_frames);
   for (const std::uint32_t threads : {2U, 3U}) {
-    const Outcome several = encoded(source, settings, threads);
+    const EncoderOutcome several = encoded(source, settings, threads);
     ASSERT_TRUE(several.report);
     EXPECT_TRUE(several.stream == one.stream) << threads << " threads";
     EXPECT_EQ(several.report->metrics.kg_error_percent, one.report->metrics.kg_error_percent);
@@ -120,7 +120,8 @@ TEST_P(EncoderThreads, GiveTheSameBytes) {
 // The search for bones takes most of the time.
 TEST(EncoderThreads, ProgressWithinOneGof) {
   Tube source(36, 0.0);
-  const Outcome outcome = encoded(source, settings_of(Profile::kMain, Preset::kMedium, 36), 1);
+  const EncoderOutcome outcome =
+      encoded(source, settings_of(Profile::kMain, Preset::kMedium, 36), 1);
   ASSERT_TRUE(outcome.report);
   EXPECT_EQ(outcome.report->num_gofs, 1U);
   const auto after_first = std::find(outcome.progress.begin(), outcome.progress.end(), 0.5);
