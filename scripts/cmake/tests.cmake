@@ -47,6 +47,7 @@ function(rlpc_test name)
   if(TARGET rlpc_test_headers)
     target_precompile_headers(${name} REUSE_FROM rlpc_test_headers)
   endif()
+  rlpc_unity(${name})
   gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS unit)
 endfunction()
