@@ -50,7 +50,8 @@ double mean_step(const FramePattern& pattern) {
 void set_layer_steps(Vector<std::uint8_t>& steps) {
   double step = 1.0;
   for (std::size_t l = steps.size(); l-- > 0; step *= kStepOfLayer) {
-    steps[l] = static_cast<std::uint8_t>(kMaxLayerStep * std::max(step, kMinLayerStep) + 0.5);
+    steps[l] =
+        static_cast<std::uint8_t>(std::lround(kMaxLayerStep * std::max(step, kMinLayerStep)));
   }
 }
 
