@@ -23,7 +23,11 @@ namespace {
 // components move in jumps.
 constexpr double kMaxKindRatio = 1.25;
 constexpr double kMaxMeanKindRatio = 1.02;
-constexpr std::uint32_t kNumPositions = 150000;  // enough for samples to save time
+
+bool is_long() { return std::getenv("RLPC_LONG") != nullptr; }  // `scripts/test --all` sets it
+
+// Returns enough vertices of all frames for samples to save time.
+std::uint32_t num_positions() { return is_long() ? 300000 : 150000; }
 
 // Sheets that move rigidly, each with waves of its own or of all: of few or many frequencies,
 // slow or fast, or of noise. One kind of GOF wins for some, another for others.
@@ -33,8 +37,9 @@ class MovingSheets {
     constexpr std::array<std::uint32_t, 4> kSheets{1, 3, 12, 40};
     const std::uint32_t sheets = kSheets[seed % 4];
     num_frames_ = 40 + below(60);
-    const auto side =
-        static_cast<std::uint32_t>(std::sqrt(double{kNumPositions} / num_frames_ / sheets)) + 1;
+    const auto side = static_cast<std::uint32_t>(std::sqrt(
+                          static_cast<double>(num_positions()) / num_frames_ / sheets)) +
+                      1;
     speed_ = std::exp2(between(-6.0, 1.0));
     height_ = std::exp2(between(-7.0, -2.0));
     noise_ = below(4) == 0 ? 1e-3 : 0.0;
@@ -133,8 +138,7 @@ double bytes_of_sheets(const MovingSheets& sheets, Profile profile,
 }
 
 TEST(KindChoice, CostsAboutAsLittleAsAnyKind) {
-  // `scripts/test --all` sets it.
-  const unsigned num_seeds = std::getenv("RLPC_LONG") != nullptr ? 80 : 4;
+  const unsigned num_seeds = is_long() ? 80 : 4;
   double mean = 0.0;
   for (unsigned seed = 0; seed < num_seeds; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);

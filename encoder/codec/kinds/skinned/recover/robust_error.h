@@ -12,10 +12,10 @@ namespace rlpc {
 //   errors  RMS of a coordinate of each point, extents; at least one
 double robust_scale(std::vector<double> errors);
 
-// Returns a sum that the step with the weights below lowers.
+// Returns the sum of log2(1 + (error / scale)^2).
 double robust_cost(std::span<const double> errors, double scale);
 
-// Returns the weight of the equations of a point with an error.
+// Returns the weight of the equations of a point with an error, so that steps lower that sum.
 double robust_weight(double error, double scale);
 
 }  // namespace rlpc
