@@ -4,6 +4,7 @@ tools; the Git hook accepts the subjects of commits that it should."""
 
 import importlib.machinery
 import importlib.util
+import json
 import pathlib
 import shutil
 import subprocess
@@ -16,6 +17,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import check_javascript
 import check_python
+import check_tidy
 import cpp_source
 from test_checks import TreeTest
 
@@ -40,6 +42,67 @@ class Python(TreeTest):
             self.assert_one(check_python.check, {"decoder/a.py": ""}, "not installed")
         with unittest.mock.patch.object(shutil, "which", return_value="flake8"):
             self.assert_one(check_python.check, {"a.py": ""}, "sees nothing")
+
+
+class Tidy(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        self.write(".clang-tidy", "Checks: -*,misc-unused-parameters\nWarningsAsErrors: '*'\n")
+        self.write("common/a.h", "#pragma once\nint f(int x);\n")
+        self.write("common/a.cpp", '#include "common/a.h"\nint f(int x) { return x; }\n')
+        self.write("common/b.cpp", "int g() { return 1; }\n")
+        self.compiled("common/a.cpp", "common/b.cpp")
+
+    def write(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+
+    def compiled(self, *names):
+        self.write("build/sanitize/compile_commands.json", json.dumps([
+            {"directory": str(self.root), "file": str(self.root / name),
+             "command": f"clang++ -I{self.root} -c {self.root / name}"} for name in names]))
+
+    def read(self, accepted=True):
+        """The names of the sources that clang-tidy is called for, and the complaints."""
+        names = []
+
+        def findings(_tool, _build, source):
+            names.append(source.name)
+            return "" if accepted else "no"
+
+        with unittest.mock.patch.object(check_tidy, "findings", findings), \
+                unittest.mock.patch.object(shutil, "which", return_value=sys.executable):
+            complaints, _ = check_tidy.check(self.root)
+        return sorted(names), complaints
+
+    def test_what_was_accepted_is_read_again_only_if_it_may_have_changed(self):
+        self.assertEqual(self.read(), (["a.cpp", "b.cpp"], []))
+        self.assertEqual(self.read(), ([], []))
+        self.write("common/a.h", "#pragma once\nint f(int y);\n")
+        self.assertEqual(self.read(), (["a.cpp"], []))
+        self.write(".clang-tidy", "Checks: -*,bugprone-*\n")
+        self.assertEqual(self.read(), (["a.cpp", "b.cpp"], []))
+
+    def test_what_was_not_accepted_is_read_again(self):
+        for _ in range(2):
+            names, complaints = self.read(accepted=False)
+            self.assertEqual(names, ["a.cpp", "b.cpp"])
+            self.assertEqual(len(complaints), 2)
+
+    def test_no_source_is_a_complaint(self):
+        self.compiled()
+        self.assertEqual(len(self.read()[1]), 1)
+
+    @unittest.skipUnless(shutil.which(check_tidy.TOOL), "clang-tidy is not installed")
+    def test_a_planted_fault_is_found(self):
+        self.assertEqual(check_tidy.check(self.root)[0], [])
+        self.write("common/b.cpp", "int g(int unused) { return 1; }\n")
+        complaints = check_tidy.check(self.root)[0]
+        self.assertEqual(len(complaints), 1)
+        self.assertIn("misc-unused-parameters", complaints[0])
 
 
 class JavaScript(TreeTest):
