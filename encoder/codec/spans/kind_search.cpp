@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "encoder/codec/spans/lagrangian.h"
@@ -71,16 +72,22 @@ EncodedSpan KindSearch::compare(double step, double analysis_step) {
   if (frames_.has_followers) best_cost.bits -= 0.5 * bits_of_rig(best);
   for (std::size_t k = 1; k < kinds_.size(); ++k) {
     std::unique_ptr<SpanCoder> coder = kinds_[k]->make_coder(frames_);
-    if (preset_ != Preset::kSlow && coder->is_out_of_reach(step, best_cost)) continue;
+    const std::optional<double> near =
+        preset_ == Preset::kSlow ? step : coder->step_in_reach(step, best_cost);
+    if (!near) continue;
     is_contested_ = true;
-    EncodedSpan encoded = coder->encode(step, analysis_step);
-    const SpanCost cost = cost_of(encoded, frames_);
+    EncodedSpan encoded = coder->encode(*near, *near == step ? analysis_step : *near);
+    SpanCost cost = cost_of(encoded, frames_);
     const SpanCost at_equal_error =
-        cost_at_error(*coder, frames_, step, cost, best_cost.squared_error);
+        cost_at_error(*coder, frames_, *near, cost, best_cost.squared_error);
     // fixed: by less, the likeliest kind is kept: it decodes faster, and becomes a skin in
     // glTF.
     constexpr double kWorthIt = 0.98;
     if (ratio_at_equal_error(at_equal_error, best_cost) >= kWorthIt) continue;
+    if (*near != step) {
+      encoded = coder->encode(step, analysis_step);
+      cost = cost_of(encoded, frames_);
+    }
     if (chosen_ > 0) coders_[chosen_].reset();
     coders_[k] = std::move(coder);
     chosen_ = k;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@ namespace {
 struct KindCalls {
   int encodings = 0;
   int released = 0;
+  double last_step = 0.0;
 };
 
 // What a kind and its coders answer.
@@ -23,22 +25,25 @@ struct Answers {
   std::uint32_t min = 0;     // number of components of the likeliest kind from which it may win
   std::size_t expected = 0;  // size that its sample leads to; 0: it has no sample
   double squared_error = 0.0;
+  double scale = 1.0;  // of the step at which its error is expected to be that of the rival
 };
 
 class FakeCoder : public SpanCoder {
  public:
   FakeCoder(const Answers& answers, KindCalls& calls) : answers_(answers), calls_(calls) {}
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return false; }
-  EncodedSpan encode(double /*step*/, double /*analysis_step*/) override {
+  EncodedSpan encode(double step, double /*analysis_step*/) override {
     ++calls_.encodings;
+    calls_.last_step = step;
     EncodedSpan encoded;
     encoded.units.push_back({UnitType::kGof, std::vector<std::uint8_t>(answers_.bytes)});
     encoded.squared_error = answers_.squared_error;
     return encoded;
   }
   void release_analysis() override { ++calls_.released; }
-  bool is_out_of_reach(double /*step*/, const SpanCost& rival) override {
-    return 8.0 * static_cast<double>(answers_.expected) > rival.bits;
+  std::optional<double> step_in_reach(double step, const SpanCost& rival) override {
+    if (8.0 * static_cast<double>(answers_.expected) > rival.bits) return std::nullopt;
+    return answers_.scale * step;
   }
 
  private:
@@ -106,6 +111,19 @@ TEST(KindSearch, ComparesAtEqualError) {
   f.add({.bytes = 175, .squared_error = 20000.0});
   KindSearch search(f.kinds, f.frames, Preset::kMedium);
   EXPECT_EQ(Fixture::bytes(search, 10.0), 100U);
+}
+
+TEST(KindSearch, TriesAKindAtTheStepOfTheSameErrorAndReturnsItAtItsOwn) {
+  Fixture f;
+  f.add({.bytes = 100});
+  f.add({.bytes = 110, .scale = 0.5});
+  f.add({.bytes = 80, .scale = 0.25});
+  KindSearch search(f.kinds, f.frames, Preset::kMedium);
+  EXPECT_EQ(Fixture::bytes(search, 10.0), 80U);
+  EXPECT_EQ(f.calls[1]->encodings, 1);
+  EXPECT_EQ(f.calls[1]->last_step, 5.0);
+  EXPECT_EQ(f.calls[2]->encodings, 2);
+  EXPECT_EQ(f.calls[2]->last_step, 10.0);
 }
 
 TEST(KindSearch, ComparesOnce) {

@@ -99,9 +99,12 @@ class SpanCoder {
   // analyse for; an analysis is reused as long as analysis_step stays the same.
   virtual EncodedSpan encode(double step, double analysis_step) = 0;
   virtual void release_analysis() = 0;
-  // Whether encode(step) can be expected to cost clearly more than another encoding of the same
-  // span, at equal error. False: it may cost less, or finding out takes as long as encode().
-  virtual bool is_out_of_reach(double /*step*/, const SpanCost& /*rival*/) { return false; }
+  // Returns a step at which encode() can be expected to err about as much as another encoding
+  // of the span, and `step` where that is not known; none if it can be expected to cost clearly
+  // more there.
+  virtual std::optional<double> step_in_reach(double step, const SpanCost& /*rival*/) {
+    return step;
+  }
   // Whether several kinds of GOF have been encoded, as none was clearly the best.
   virtual bool is_contested() const { return false; }
 };

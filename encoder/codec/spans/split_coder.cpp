@@ -82,7 +82,7 @@ EncodedSpan SplitCoder::encode(double step, double analysis_step) {
   return all;
 }
 
-bool SplitCoder::is_out_of_reach(double step, const SpanCost& rival) {
+std::optional<double> SplitCoder::step_in_reach(double step, const SpanCost& rival) {
   constexpr std::size_t kAsked = 2;  // fixed: time; GOFs of a span resemble each other
   const std::vector<FrameRange> gofs = frames_.gofs();
   const std::size_t count = std::min(gofs.size(), kAsked);
@@ -91,12 +91,12 @@ bool SplitCoder::is_out_of_reach(double step, const SpanCost& rival) {
     Part& part = *parts_[g];
     const double share = static_cast<double>(gofs[g].count) / frames_.num_frames;
     part.frames = frames_in_gof(frames_, gofs[g]);
-    const bool is_out =
-        part.coder->is_out_of_reach(step, {share * rival.bits, share * rival.squared_error});
+    const auto found =
+        part.coder->step_in_reach(step, {share * rival.bits, share * rival.squared_error});
     part.frames.xyz = {};
-    if (!is_out) return false;
+    if (found) return found;
   }
-  return true;
+  return std::nullopt;
 }
 
 void SplitCoder::release_analysis() {

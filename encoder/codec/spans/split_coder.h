@@ -24,7 +24,7 @@ class SplitCoder : public SpanCoder {
   EncodedSpan encode(double step, double analysis_step) override;
   void release_analysis() override;
   // Asks the coders of at most two GOFs.
-  bool is_out_of_reach(double step, const SpanCost& rival) override;
+  std::optional<double> step_in_reach(double step, const SpanCost& rival) override;
 
  private:
   struct Part {

@@ -22,12 +22,13 @@ class ClusterSpanCoder : public SpanCoder {
   explicit ClusterSpanCoder(const ClusterGofCoding& coding) : coding_(coding) {}
 
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return true; }
-  bool is_out_of_reach(double step, const SpanCost& rival) override {
-    if (!uses_sample()) return false;
+  std::optional<double> step_in_reach(double step, const SpanCost& rival) override {
+    if (!uses_sample()) return step;
     const ClusterSample sample(coding_.mesh(), coding_.settings(), coding_.frames());
     const ClusterSample::Estimate estimate = sample.cheapest(step);
     choice_ = estimate.choice;
-    return ratio_at_equal_error(estimate.cost, rival) > kMargin;
+    if (ratio_at_equal_error(estimate.cost, rival) > kMargin) return std::nullopt;
+    return step;
   }
   EncodedSpan encode(double step, double analysis_step) override {
     if (!clusters_) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "common/codec/mesh/ordered_meshes.h"
@@ -14,6 +15,24 @@
 
 namespace rlpc {
 namespace {
+
+// tuned: Vertices of a sample with kFrames frames; more if there are fewer frames.
+constexpr std::uint32_t kVertices = 1800;
+constexpr std::uint32_t kFrames = 65;
+// tuned: Maximum number of vertices of a sample.
+constexpr std::uint32_t kMaxVertices = 2500;
+// tuned (off: 0): Estimates above the rival by less than this factor may be wrong: at the
+// border of a region, vertices have fewer neighbours than in the mesh.
+constexpr double kMargin = 1.4;
+// tuned (off: 0): A sample with this many times as many vertices is asked then, if it is a
+// small part of the mesh.
+constexpr std::uint32_t kLarger = 4;
+// tuned (off: 0): Its estimates above the rival by less than this factor may be wrong.
+constexpr double kLargerMargin = 1.0;
+
+std::uint32_t vertices_of_sample(std::uint32_t num_frames) {
+  return std::min(kVertices * kFrames / std::min(num_frames, kFrames), kMaxVertices);
+}
 
 // Choices at a step hold for all steps within kAnalysisServes.
 class InterSpanCoder : public SpanCoder {
@@ -28,7 +47,7 @@ class InterSpanCoder : public SpanCoder {
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return true; }
   void release_analysis() override {}
   EncodedSpan encode(double step, double /*analysis_step*/) override;
-  bool is_out_of_reach(double step, const SpanCost& rival) override;
+  std::optional<double> step_in_reach(double step, const SpanCost& rival) override;
 
  private:
   void choose(double step, const StartTrial& start);
@@ -65,7 +84,7 @@ void InterSpanCoder::choose(double step, const StartTrial& start) {
   const auto numbers = patches_of(settings_, is_open_ended, num_frames);
   auto patterns = patterns_of(settings_, is_open_ended, num_frames);
   std::uint32_t patches = numbers.front();
-  if (settings_.preset != Preset::kSlow && InterSample::saves_time(frames_.num_vertices)) {
+  if (settings_.preset != Preset::kSlow && frames_.num_vertices > 2 * kSmallestSample) {
     const auto compared = choices_of_patches({patterns.front()}, numbers);
     patches = cheapest_at_start(compared, num_frames, start).num_patches;
     if (patterns.size() > 1) patterns = {sample().cheapest_pattern(step)};
@@ -77,13 +96,24 @@ void InterSpanCoder::choose(double step, const StartTrial& start) {
   for (const FramePattern& pattern : patterns) choices_.push_back({pattern, patches});
 }
 
-bool InterSpanCoder::is_out_of_reach(double step, const SpanCost& rival) {
-  return sample().is_out_of_reach(step, rival);
+std::optional<double> InterSpanCoder::step_in_reach(double step, const SpanCost& rival) {
+  auto found = sample().cheapest_choice(step, rival, kMargin);
+  if (!found) return std::nullopt;
+  const std::uint32_t larger = kLarger * sample().num_vertices();
+  if (frames_.num_vertices > 2 * larger) {
+    InterSample large(mesh_, settings_, frames_, larger);
+    found = large.estimate(found->choice, step, rival);
+    if (found->ratio > kLargerMargin) return std::nullopt;
+  }
+  return step * found->choice.step_scale;
 }
 
 // Returns the sample, which is made once.
 InterSample& InterSpanCoder::sample() {
-  if (!sample_) sample_ = std::make_unique<InterSample>(mesh_, settings_, frames_);
+  if (!sample_) {
+    const std::uint32_t count = vertices_of_sample(frames_.num_frames);
+    sample_ = std::make_unique<InterSample>(mesh_, settings_, frames_, count);
+  }
   return *sample_;
 }
 

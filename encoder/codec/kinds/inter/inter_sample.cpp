@@ -13,22 +13,16 @@ namespace {
 
 // tuned: Frames of a sample. They hold a whole period of the longest pattern.
 constexpr std::uint32_t kWindow = 65;
-// tuned: Vertices of a sample with kWindow frames; more if there are fewer frames.
-constexpr std::uint32_t kVertices = 1800;
-// tuned: Maximum number of vertices of a sample.
-constexpr std::uint32_t kMaxVertices = 2500;
-
-// tuned (off: 0): Estimates above the rival by less than this factor may be wrong: at the
-// border of a region, vertices have fewer neighbours than in the mesh.
-constexpr double kMargin = 1.4;
 // tuned (off: 0): Other patterns, patches or the remaining frames save at most this factor.
 constexpr double kOthers = 1.25;
 
 std::uint32_t window_of(std::uint32_t num_frames) { return std::min(num_frames, kWindow); }
 
-std::uint32_t vertices_of_sample(std::uint32_t num_vertices, std::uint32_t num_frames) {
-  return sample_size(num_vertices,
-                     std::min(kVertices * kWindow / window_of(num_frames), kMaxVertices));
+// Returns how many patches of the size of `count` in `of` vertices a mesh has; 0 only for 0.
+std::uint32_t scaled_patches(std::uint32_t count, std::uint32_t num_vertices,
+                             std::uint32_t of) {
+  const auto scaled = std::uint64_t{count} * num_vertices / of;
+  return static_cast<std::uint32_t>(std::max<std::uint64_t>(scaled, count > 0 ? 1 : 0));
 }
 
 // Returns settings that code the first frame of a sample by the usual weights.
@@ -42,12 +36,12 @@ EncoderSettings settings_of_sample(EncoderSettings settings) {
 }  // namespace
 
 InterSample::InterSample(const SequenceMesh& mesh, const EncoderSettings& settings,
-                         const SpanFrames& frames)
+                         const SpanFrames& frames, std::uint32_t max_vertices)
     : num_vertices_(frames.num_vertices),
       num_frames_(frames.num_frames),
       window_{(num_frames_ - window_of(num_frames_)) / 2, window_of(num_frames_)},
       sample_(
-          sample_mesh(frames, mesh.triangles, vertices_of_sample(num_vertices_, num_frames_))),
+          sample_mesh(frames, mesh.triangles, sample_size(frames.num_vertices, max_vertices))),
       frames_(sample_.frames_of(frames, window_)),
       patterns_(patterns_of(settings, mesh.header.open_end_flag, frames.num_frames)),
       patches_(patches_of(settings, mesh.header.open_end_flag, frames.num_frames)),
@@ -56,10 +50,6 @@ InterSample::InterSample(const SequenceMesh& mesh, const EncoderSettings& settin
       meshes_(topology_, sample_.triangles, true),
       mesh_{mesh.header, topology_, sample_.triangles},
       maker_(mesh_, meshes_[Prediction::kLayers], settings_, frames_, num_frames_) {}
-
-bool InterSample::saves_time(std::uint32_t num_vertices) {
-  return num_vertices > 2 * kSmallestSample;
-}
 
 // Returns the expected cost of the whole GOF.
 SpanCost InterSample::whole(const InterTrial& trial) const {
@@ -70,28 +60,57 @@ SpanCost InterSample::whole(const InterTrial& trial) const {
   return cost;
 }
 
-// Codes the window, but ends as soon as the trial needs too much. Returns whether it need not.
-bool InterSample::may_follow(InterTrial& trial, const SpanCost& rival) const {
+// Codes the window, but ends as soon as the trial clearly needs too much.
+bool InterSample::is_far_off(InterTrial& trial, const SpanCost& rival, double limit) const {
   for (std::uint32_t part = 4; part > 0; part /= 2) {
     trial.code_to(1 + (window_.count - 1 + part - 1) / part);
-    if (ratio_at_equal_error(whole(trial), rival) > kMargin * kOthers) return false;
+    if (ratio_at_equal_error(whole(trial), rival) > limit * kOthers) return true;
   }
-  return true;
+  return false;
 }
 
-bool InterSample::is_out_of_reach(double step, const SpanCost& rival) {
+InterSample::Estimate InterSample::at_equal_error(std::unique_ptr<InterTrial> trial,
+                                                  double step, const SpanCost& rival) {
+  InterChoice choice = trial->choice();
+  const double scale = scale_to(rival.squared_error, whole(*trial).squared_error);
+  if (scale != 1.0) {
+    choice.step_scale *= scale;
+    maker_.forget_first_frames();
+    trial = maker_.start(choice, step);
+    trial->code_to(window_.count);
+  }
+  choice.num_patches = scaled_patches(choice.num_patches, num_vertices_, num_vertices());
+  return {choice, ratio_at_equal_error(whole(*trial), rival)};
+}
+
+std::optional<InterSample::Estimate> InterSample::cheapest_choice(double step,
+                                                                  const SpanCost& rival,
+                                                                  double limit) {
   maker_.forget_first_frames();
   auto best = maker_.start({patterns_.front()}, step);
-  if (!may_follow(*best, rival)) return true;
+  if (is_far_off(*best, rival, limit)) return std::nullopt;
   if (patterns_.size() > 1) best = cheapest_of(without_patches(), step);
   pattern_.put(step, best->choice().pattern);
-  if (ratio_at_equal_error(whole(*best), rival) <= kMargin) return false;
+  const Estimate without = at_equal_error(std::move(best), step, rival);
+  if (without.ratio <= limit) return without;
   std::vector<InterChoice> choices;
   for (const std::uint32_t count : patches_) {
     if (count > 0) choices.push_back({patterns_.front(), patches_of_sample(count)});
   }
-  return choices.empty() ||
-         ratio_at_equal_error(whole(*cheapest_of(choices, step)), rival) > kMargin;
+  if (choices.empty()) return std::nullopt;
+  maker_.forget_first_frames();
+  const Estimate with = at_equal_error(cheapest_of(choices, step), step, rival);
+  if (with.ratio <= limit) return with;
+  return std::nullopt;
+}
+
+InterSample::Estimate InterSample::estimate(const InterChoice& choice, double step,
+                                            const SpanCost& rival) {
+  InterChoice of_sample = choice;
+  of_sample.num_patches = patches_of_sample(choice.num_patches);
+  auto trial = maker_.start(of_sample, step);
+  trial->code_to(window_.count);
+  return at_equal_error(std::move(trial), step, rival);
 }
 
 const FramePattern& InterSample::cheapest_pattern(double step) {
@@ -118,8 +137,7 @@ std::unique_ptr<InterTrial> InterSample::cheapest_of(const std::vector<InterChoi
 
 // Returns the number of patches of the sample that are as large as `count` of the whole mesh.
 std::uint32_t InterSample::patches_of_sample(std::uint32_t count) const {
-  const auto patches = std::uint64_t{count} * frames_.num_vertices / num_vertices_;
-  return static_cast<std::uint32_t>(std::max<std::uint64_t>(patches, 1));
+  return scaled_patches(count, num_vertices(), num_vertices_);
 }
 
 }  // namespace rlpc

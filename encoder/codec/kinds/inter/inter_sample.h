@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "common/codec/kinds/inter/frame_order.h"
@@ -22,23 +23,33 @@ namespace rlpc {
 // of the whole mesh, which may be predicted from counterparts.
 class InterSample {
  public:
-  // Keeps a reference to the header of the mesh.
+  // What the whole GOF is expected to take.
+  struct Estimate {
+    InterChoice choice;  // its steps are scaled so that it errs about as much as the rival
+    double ratio;        // of its bits to those of the rival
+  };
+
+  // max_vertices: maximum number of vertices of the sample; no more than half of the mesh are
+  // taken. Keeps a reference to the header of the mesh.
   InterSample(const SequenceMesh& mesh, const EncoderSettings& settings,
-              const SpanFrames& frames);
+              const SpanFrames& frames, std::uint32_t max_vertices);
   InterSample(const InterSample&) = delete;
   InterSample& operator=(const InterSample&) = delete;
 
-  // Whether the sample is a small part of the mesh.
-  static bool saves_time(std::uint32_t num_vertices);
-  // Whether the whole GOF takes clearly more bits than the rival, at equal error. step: as in
-  // SpanCoder::encode().
-  bool is_out_of_reach(double step, const SpanCost& rival);
+  std::uint32_t num_vertices() const { return frames_.num_vertices; }
+  // Estimates what the cheapest choice takes; none if that is clearly more than `limit` times
+  // the bits of the rival. step: as in SpanCoder::encode().
+  std::optional<Estimate> cheapest_choice(double step, const SpanCost& rival, double limit);
+  // Estimates what one choice takes, from steps that are `choice.step_scale` times as large.
+  Estimate estimate(const InterChoice& choice, double step, const SpanCost& rival);
   // Returns the pattern that costs least without patches.
   const FramePattern& cheapest_pattern(double step);
 
  private:
   SpanCost whole(const InterTrial& trial) const;
-  bool may_follow(InterTrial& trial, const SpanCost& rival) const;
+  Estimate at_equal_error(std::unique_ptr<InterTrial> trial, double step,
+                          const SpanCost& rival);
+  bool is_far_off(InterTrial& trial, const SpanCost& rival, double limit) const;
   std::vector<InterChoice> without_patches() const;
   std::unique_ptr<InterTrial> cheapest_of(const std::vector<InterChoice>& choices, double step);
   std::uint32_t patches_of_sample(std::uint32_t count) const;

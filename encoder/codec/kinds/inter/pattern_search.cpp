@@ -30,16 +30,6 @@ std::uint32_t whole_periods(std::uint32_t num_frames, std::size_t part, std::uin
       std::min<std::size_t>(num_frames, 1 + std::max<std::size_t>(periods, 1) * period));
 }
 
-// Returns the factor of the steps that leads to about the wanted squared error; 1 if it is near
-// enough.
-double scale_to(double wanted, double squared_error) {
-  // fixed: differences half and twice as large give the same streams of six animations.
-  constexpr double kNear = 1.05;
-  if (wanted <= 0.0 || squared_error <= 0.0) return 1.0;
-  const double ratio = wanted / squared_error;
-  return ratio < kNear && ratio > 1.0 / kNear ? 1.0 : std::sqrt(ratio);
-}
-
 using Encodings = std::vector<std::unique_ptr<InterTrial>>;
 
 void code_all_to(Encodings& encodings, std::uint32_t count) {
@@ -82,6 +72,14 @@ bool is_cheaper(const std::unique_ptr<InterTrial>& a, const std::unique_ptr<Inte
 }
 
 }  // namespace
+
+double scale_to(double wanted, double squared_error) {
+  // fixed: differences half and twice as large give the same streams of six animations.
+  constexpr double kNear = 1.05;
+  if (wanted <= 0.0 || squared_error <= 0.0) return 1.0;
+  const double ratio = wanted / squared_error;
+  return ratio < kNear && ratio > 1.0 / kNear ? 1.0 : std::sqrt(ratio);
+}
 
 std::vector<FramePattern> patterns_of(const EncoderSettings& settings, bool is_open_ended,
                                       std::uint32_t num_frames) {

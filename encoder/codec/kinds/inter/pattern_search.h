@@ -28,6 +28,10 @@ std::vector<std::uint32_t> patches_of(const EncoderSettings& settings, bool is_o
 std::vector<InterChoice> choices_of_patches(const std::vector<FramePattern>& patterns,
                                             const std::vector<std::uint32_t>& patches);
 
+// Returns the factor of the steps that leads to about the wanted squared error; 1 if it is near
+// enough.
+double scale_to(double wanted, double squared_error);
+
 // Starts the encoding of a GOF by a choice.
 using StartTrial = std::function<std::unique_ptr<InterTrial>(const InterChoice&)>;
 
