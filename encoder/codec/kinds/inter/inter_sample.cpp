@@ -106,9 +106,9 @@ std::optional<InterSample::Estimate> InterSample::cheapest_choice(double step,
 
 InterSample::Estimate InterSample::estimate(const InterChoice& choice, double step,
                                             const SpanCost& rival) {
-  InterChoice of_sample = choice;
-  of_sample.num_patches = patches_of_sample(choice.num_patches);
-  auto trial = maker_.start(of_sample, step);
+  InterChoice part = choice;
+  part.num_patches = patches_of_sample(choice.num_patches);
+  auto trial = maker_.start(part, step);
   trial->code_to(window_.count);
   return at_equal_error(std::move(trial), step, rival);
 }
