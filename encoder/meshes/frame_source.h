@@ -15,6 +15,7 @@
 #include "common/codec/mesh/mesh.h"
 #include "common/result.h"
 #include "encoder/meshes/source_attribute.h"
+#include "encoder/meshes/source_images.h"
 #include "encoder/meshes/source_rig.h"
 
 namespace rlpc {
@@ -148,8 +149,8 @@ struct InputOptions {
   std::optional<FrameRate> frame_rate;
   // glTF only, in this order: names, indices from 0, or "all"; none: the first.
   std::vector<std::string> animations{};
-  bool weld = true;            // glTF only: merge vertices that coincide in every frame
-  bool textures = true;        // glTF and OBJ: include images in the asset
+  bool weld = true;                  // glTF only: merge vertices that coincide in every frame
+  Images images = Images::kSmaller;  // glTF and OBJ
   bool rig = true;             // glTF only: tell the encoder the bones (FrameSource::rig())
   std::optional<Axes> axes{};  // axes to turn positions to
   // Input estimated to need more is an error. Files may claim far more than they contain.

@@ -42,10 +42,11 @@ void find_extensions(const Json& value, std::set<std::string>& found) {
 
 class AssetMaker {
  public:
-  AssetMaker(const Json& root, const GltfModel& model, GltfFile& file, GltfMemory& memory)
-      : root_(root), model_(model), file_(file), memory_(memory) {}
+  AssetMaker(const Json& root, const GltfModel& model, GltfFile& file, Images images,
+             GltfMemory& memory)
+      : root_(root), model_(model), file_(file), how_(images), memory_(memory) {}
 
-  GltfAsset make(bool textures) {
+  GltfAsset make() {
     for (const char* const key : kKept) {
       if (root_.contains(key)) out_[key] = root_[key];
     }
@@ -54,7 +55,7 @@ class AssetMaker {
     if (out_["materials"].size() == model_.num_materials && has_plain_parts()) {
       out_["materials"].push_back(Json::object());
     }
-    if (!textures) {
+    if (how_ == Images::kNone) {
       for (const char* const key : {"textures", "samplers", "images"}) out_.erase(key);
       remove_textures(out_["materials"], [](const Json&) { return true; });
     } else {
@@ -232,6 +233,7 @@ class AssetMaker {
       if (!errors && memory_.take("images", kCopies * size)) {
         bytes.resize(static_cast<std::size_t>(size));
         reader.read(range.buffer, range.offset, bytes);
+        if (!errors && how_ == Images::kSmaller) bytes = smaller_png(std::move(bytes));
         if (!errors) image.view = made_.add_view(bytes);
       }
     }
@@ -293,6 +295,7 @@ class AssetMaker {
   const Json& root_;
   const GltfModel& model_;
   GltfFile& file_;
+  const Images how_;
   GltfMemory& memory_;
   GlbAsset made_;
   Json& out_ = made_.root;
@@ -307,8 +310,8 @@ class AssetMaker {
 }  // namespace
 
 GltfAsset make_gltf_asset(const nlohmann::json& root, const GltfModel& model, GltfFile& file,
-                          bool textures, GltfMemory& memory) {
-  return AssetMaker(root, model, file, memory).make(textures);
+                          Images images, GltfMemory& memory) {
+  return AssetMaker(root, model, file, images, memory).make();
 }
 
 }  // namespace rlpc

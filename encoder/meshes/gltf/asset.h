@@ -10,6 +10,7 @@
 #include "encoder/meshes/gltf/document/buffers.h"
 #include "encoder/meshes/gltf/document/file.h"
 #include "encoder/meshes/gltf/model.h"
+#include "encoder/meshes/source_images.h"
 
 namespace rlpc {
 
@@ -22,8 +23,8 @@ struct GltfAsset {
 };
 
 // Makes the asset of a valid document. Images are moved into the binary chunk; without
-// `textures`, materials lose them. Exceeding the limit of `memory` is an error there.
+// images, materials lose their textures. Exceeding the limit of `memory` is an error there.
 GltfAsset make_gltf_asset(const nlohmann::json& root, const GltfModel& model, GltfFile& file,
-                          bool textures, GltfMemory& memory);
+                          Images images, GltfMemory& memory);
 
 }  // namespace rlpc

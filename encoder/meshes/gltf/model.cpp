@@ -280,7 +280,7 @@ InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLi
   // Count the asset, which is another tree, and its text.
   memory.take("materials", file->document_bytes);
   if (errors) return errors.first();
-  GltfAsset asset = make_gltf_asset(*file->json, model, *file, options.textures, memory);
+  GltfAsset asset = make_gltf_asset(*file->json, model, *file, options.images, memory);
   if (errors) return errors.first();
   model.asset = std::move(asset.glb);
   model.notes.insert(model.notes.end(), asset.notes.begin(), asset.notes.end());

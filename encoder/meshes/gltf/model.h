@@ -58,7 +58,7 @@ struct GltfModel {
   std::uint64_t memory_bytes = 0;       // estimate for the model and the source made from it
 };
 
-// Reads a document; of the options, uses path, animations, textures and max_memory_bytes.
+// Reads a document; of the options, uses path, animations, images and max_memory_bytes.
 InputResult<GltfModel> read_gltf_model(const InputOptions& options, const GltfLimits& limits);
 
 }  // namespace rlpc

@@ -19,8 +19,8 @@ namespace {
 using Json = nlohmann::json;
 class AssetMaker {
  public:
-  AssetMaker(const std::string& folder, bool textures, std::uint64_t max_bytes)
-      : folder_(folder), textures_(textures), max_bytes_(max_bytes) {}
+  AssetMaker(const std::string& folder, Images images, std::uint64_t max_bytes)
+      : folder_(folder), images_(images), max_bytes_(max_bytes) {}
 
   MaterialAsset make(const SourceMaterials& materials) {
     MtlFile file = read_mtl(materials);
@@ -80,7 +80,7 @@ class AssetMaker {
 
   // Returns the texture of a map; null: no such image.
   Json texture(const MtlMap& map) {
-    if (map.name.empty() || !textures_) return nullptr;
+    if (map.name.empty() || images_ == Images::kNone) return nullptr;
     const auto [place, is_new] = textures_of_names_.try_emplace(map.name, nullptr);
     if (is_new) place->second = add_texture(map.name);
     Json info = place->second;
@@ -118,6 +118,7 @@ class AssetMaker {
       return leave_out("it is neither PNG nor JPEG");
     }
     max_bytes_ -= bytes->size();
+    if (images_ == Images::kSmaller) *bytes = smaller_png(std::move(*bytes));
     made_.files.push_back(path);
     asset_.root["images"].push_back(
         {{"bufferView", asset_.add_view(*bytes)}, {"mimeType", type}});
@@ -126,7 +127,7 @@ class AssetMaker {
   }
 
   std::string folder_;
-  bool textures_;
+  Images images_;
   std::uint64_t max_bytes_;
   GlbAsset asset_;
   MaterialAsset made_;
@@ -151,8 +152,8 @@ std::uint64_t material_asset_bytes(const SourceMaterials& materials) {
 }
 
 MaterialAsset make_material_asset(const SourceMaterials& materials, const std::string& folder,
-                                  bool textures, std::uint64_t max_bytes) {
-  return AssetMaker(folder, textures, max_bytes).make(materials);
+                                  Images images, std::uint64_t max_bytes) {
+  return AssetMaker(folder, images, max_bytes).make(materials);
 }
 
 }  // namespace rlpc

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "encoder/meshes/source_attribute.h"
+#include "encoder/meshes/source_images.h"
 
 namespace rlpc {
 
@@ -22,8 +23,8 @@ std::uint64_t material_asset_bytes(const SourceMaterials& materials);
 // Makes an asset with the names of materials and parts and, for materials that the .mtl text
 // describes, base colour, opacity, emission, roughness and metalness in the terms of glTF, and
 // the images for these and for normals. folder: that of the mesh; images elsewhere are not
-// read. textures: false leaves images out. max_bytes: limit of all images.
+// read. images: what becomes of them. max_bytes: limit of all images.
 MaterialAsset make_material_asset(const SourceMaterials& materials, const std::string& folder,
-                                  bool textures, std::uint64_t max_bytes);
+                                  Images images, std::uint64_t max_bytes);
 
 }  // namespace rlpc

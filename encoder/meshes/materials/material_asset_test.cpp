@@ -27,11 +27,11 @@ class MaterialAssetTest : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
   }
   MaterialAsset make(std::vector<std::string> names, const std::string& mtl,
-                     bool textures = true, std::uint64_t max_bytes = 1U << 20) const {
+                     Images images = Images::kExact, std::uint64_t max_bytes = 1U << 20) const {
     SourceMaterials materials;
     materials.names = std::move(names);
     materials.mtl = mtl;
-    return make_material_asset(materials, folder_.string(), textures, max_bytes);
+    return make_material_asset(materials, folder_.string(), images, max_bytes);
   }
   static Json json_of(const std::string& glb) {
     EXPECT_TRUE(glb.starts_with("glTF"));
@@ -90,9 +90,9 @@ TEST_F(MaterialAssetTest, ImagesAreCarriedOnce) {
   EXPECT_EQ(root["materials"][1]["emissiveTexture"]["index"], 0);
   EXPECT_EQ(root["materials"][1]["emissiveFactor"], Json({1.0, 1.0, 1.0}));
   EXPECT_NE(made.glb.find(kPng), std::string::npos);
-  EXPECT_EQ(
-      json_of(make({"a"}, "newmtl a\nmap_Kd maps/skin.png\n", false).glb).contains("images"),
-      false);
+  EXPECT_EQ(json_of(make({"a"}, "newmtl a\nmap_Kd maps/skin.png\n", Images::kNone).glb)
+                .contains("images"),
+            false);
 }
 
 TEST_F(MaterialAssetTest, AlphaIsThatOfTheBaseImage) {
@@ -128,7 +128,7 @@ TEST_F(MaterialAssetTest, ImagesThatCannotBeCarriedAreNamed) {
   write("skin.tga", "TRUEVISION");
   write("large.png", kPng + std::string(100, 'x'));
   const auto note_on = [&](const std::string& name) {
-    const auto made = make({"a"}, "newmtl a\nmap_Kd " + name + "\n", true, 50);
+    const auto made = make({"a"}, "newmtl a\nmap_Kd " + name + "\n", Images::kExact, 50);
     EXPECT_TRUE(made.files.empty());
     EXPECT_FALSE(json_of(made.glb).contains("images"));
     return made.notes.size() == 1 ? made.notes[0] : "";

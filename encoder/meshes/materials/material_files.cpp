@@ -87,7 +87,7 @@ void note_only_names(SingleMesh& mesh) {
 }
 
 // Returns an error if that takes more memory than is allowed.
-std::optional<InputError> make_asset(const std::string& path, bool textures,
+std::optional<InputError> make_asset(const std::string& path, Images images,
                                      std::uint64_t max_memory_bytes, SingleMesh& mesh) {
   const std::uint64_t held = mesh.memory_bytes() + kMtlCost * mesh.materials.mtl.size() +
                              material_asset_bytes(mesh.materials);
@@ -96,7 +96,7 @@ std::optional<InputError> make_asset(const std::string& path, bool textures,
   }
   // Images are held up to four times while the asset is made.
   const std::uint64_t left = (max_memory_bytes - held) / 4;
-  MaterialAsset made = make_material_asset(mesh.materials, folder_of(path), textures, left);
+  MaterialAsset made = make_material_asset(mesh.materials, folder_of(path), images, left);
   mesh.asset = std::move(made.glb);
   for (std::string& file : made.files) mesh.material_files.push_back(std::move(file));
   for (std::string& note : made.notes) mesh.notes.push_back(std::move(note));
@@ -179,13 +179,13 @@ bool stays_below(const fs::path& folder, const fs::path& name) {
   return !way.empty() && *way.begin() != "..";
 }
 
-InputResult<SingleMesh> read_mesh_and_materials(const std::string& path, bool textures,
+InputResult<SingleMesh> read_mesh_and_materials(const std::string& path, Images images,
                                                 std::uint64_t max_memory_bytes) {
   auto mesh = read_mesh(path, max_memory_bytes);
   if (!mesh) return mesh;
   read_material_text(path, max_memory_bytes, *mesh);
-  if (const auto error = make_asset(path, textures, max_memory_bytes, *mesh)) return *error;
-  if (textures) note_what_is_dropped(*mesh);
+  if (const auto error = make_asset(path, images, max_memory_bytes, *mesh)) return *error;
+  if (images != Images::kNone) note_what_is_dropped(*mesh);
   note_only_names(*mesh);
   return mesh;
 }

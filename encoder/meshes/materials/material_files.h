@@ -12,9 +12,9 @@
 namespace rlpc {
 
 // Reads a mesh, and the .mtl files and images that it names if they are in its folder or below
-// it, into its asset. textures: false leaves images out. Notes: files that cannot be read;
+// it, into its asset. images: what becomes of them. Notes: files that cannot be read;
 // properties of materials that the stream does not hold.
-InputResult<SingleMesh> read_mesh_and_materials(const std::string& path, bool textures,
+InputResult<SingleMesh> read_mesh_and_materials(const std::string& path, Images images,
                                                 std::uint64_t max_memory_bytes);
 
 // Reads the .mtl files that a mesh names into its materials, and adds notes about those that

@@ -285,7 +285,7 @@ InputResult<std::unique_ptr<FrameSource>> open_point_cache(const InputOptions& o
   if (mesh_path == "-" && points_path == "-") {
     return InputError{"standard input: cannot be both the mesh and its point cache"};
   }
-  auto mesh = read_mesh_and_materials(mesh_path, options.textures, max_memory_bytes);
+  auto mesh = read_mesh_and_materials(mesh_path, options.images, max_memory_bytes);
   if (!mesh) return mesh.error();
   const auto num_vertices = static_cast<std::uint32_t>(mesh->xyz.size() / 3);
   if (points_path == "-" && !may_begin_cache(beginning_of("-"), num_vertices)) {
@@ -355,7 +355,7 @@ class Pc2Stream final : public FrameStream {
 InputResult<std::unique_ptr<FrameStream>> open_pc2_stream(
     std::FILE* file, const std::string& name, const std::string& mesh_path,
     const std::optional<FrameRate>& frame_rate, std::uint64_t max_memory_bytes) {
-  auto mesh = read_mesh_and_materials(mesh_path, false, max_memory_bytes);
+  auto mesh = read_mesh_and_materials(mesh_path, Images::kNone, max_memory_bytes);
   if (!mesh) return mesh.error();
   const auto num_vertices = static_cast<std::uint32_t>(mesh->xyz.size() / 3);
   std::array<char, kPc2HeaderBytes> header{};

@@ -264,7 +264,7 @@ InputResult<std::unique_ptr<FrameSource>> open_mesh_sequence(FrameFiles files,
                                                              const InputOptions& options) {
   std::vector<std::string>& paths = files.paths;
   assert(!paths.empty());
-  auto first = read_mesh_and_materials(paths[0], options.textures, options.max_memory_bytes);
+  auto first = read_mesh_and_materials(paths[0], options.images, options.max_memory_bytes);
   if (!first) return first.error();
   FirstMesh faces{std::move(first->polygons), std::move(first->cuts), first->material_library};
   const std::uint64_t more =

@@ -14,8 +14,16 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
   const std::string group = "Texture coordinates, normals, colours, materials";
   AttributeSettings& a = line.options.settings.attributes;
   app.add_flag("--no-attributes", a.dropped, "Positions and triangles only")->group(group);
-  add_off_switch(app, "--no-textures", line.options.input.textures,
-                 "Leave images out of the materials")
+  Images& images = line.options.input.images;
+  auto* const no_textures = app.add_flag_callback(
+      "--no-textures", [&images] { images = Images::kNone; },
+      "Leave images out of the materials");
+  no_textures->group(group);
+  app.add_flag_callback(
+         "--exact-images", [&images] { images = Images::kExact; },
+         "Store the files of images (default: PNG images are deflated again where that saves "
+         "bytes; their pixels stay)")
+      ->excludes(no_textures)
       ->group(group);
   auto* const uv_bits =
       app.add_option("--uv-bits", a.uv_bits,
