@@ -335,7 +335,8 @@ class Figures(ToolsTest):
                               "--json").json()["surface"]
             found.append([surface[name] for name in (
                 "sted_spatial", "sted_temporal", "sted", "ring_edge_difference",
-                "mean_normal_angle_degrees")])
+                "mean_normal_angle_degrees", "vertex_normal_rms_degrees",
+                "normal_flicker_rms_degrees")])
         for finer, coarser in zip(found, found[1:]):
             for a, b in zip(finer, coarser):
                 self.assertLess(a, b, found)

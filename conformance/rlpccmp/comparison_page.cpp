@@ -54,6 +54,10 @@ std::string distortion_charts(const Distortion& d) {
       line("PSNR", kBlue, frames, [](const auto& f) { return f.diagonal_psnr_db; });
   psnr.worst_is_smallest = true;
   html += line_chart("PSNR, peak: the diagonal", "dB", {psnr});
+  html += line_chart(
+      "Deviation of vertex normals, RMS", "degrees",
+      {line("deviation", kBlue, surface, [](const auto& f) { return f.vertex_normals; }),
+       line("flicker", kRed, surface, [](const auto& f) { return f.normal_flicker; })});
   html += line_chart("Normal deviation, mean", "degrees",
                      {line("mean by area", kBlue, surface,
                            [](const auto& f) { return f.mean_normal_angle; })});
@@ -72,6 +76,8 @@ std::vector<KeyFigure> key_figures(const Distortion& d) {
           {number_text(m.max_error_percent, 3) + " %", "of the diagonal, largest"},
           {number_text(m.diagonal_psnr_db, 3) + " dB", "PSNR, peak: the diagonal"},
           {s.has_sted ? number_text(s.sted, 3) : "none", "STED"},
+          {number_text(s.vertex_normals, 3) + "°", "vertex normals, RMS"},
+          {number_text(s.normal_flicker, 3) + "°", "their flicker, RMS"},
           {number_text(s.mean_normal_angle, 3) + "°", "normal deviation, mean"},
           {number_text(s.max_normal_angle, 3) + "°", "normal deviation, largest"}};
 }

@@ -91,8 +91,11 @@ Measures
             the same over two virtual edges, from a vertex to itself a frame
             earlier and later, sqrt(distance^2 + (0.01 d)^2), d the diagonal of
             A's first frame. Root of the sum of squares of both
-  normals   angle between the normals of a triangle in A and B; mean weighted by
-            area in A
+  normals   of vertices, which smooth surfaces are shaded by: sums of those of
+            their triangles, weighted by area. RMS angle between A and B, and
+            RMS change of that error, as a vector, from frame to frame, weighted
+            by area in A. Of triangles: mean angle weighted by area, and the
+            largest
 
 Exit code: 0 compared; 1 compared, and beyond --max-kg or --max-error; 2 input
 or output failed, or A and B cannot be compared; 64 wrong usage.)";
@@ -256,7 +259,8 @@ std::optional<rlpc::OutputError> write_csv(const std::string& path, const rlpc::
   std::string text =
       "frame,kg_error_percent,rms_error,max_error,max_error_vertex,diagonal_psnr_db,"
       "ramanathan_psnr_db,sted_spatial,sted_temporal,ring_edge_difference_spatial,"
-      "ring_edge_difference_temporal,mean_normal_angle_degrees,max_normal_angle_degrees\n";
+      "ring_edge_difference_temporal,mean_normal_angle_degrees,max_normal_angle_degrees,"
+      "vertex_normal_rms_degrees,normal_flicker_rms_degrees\n";
   for (std::size_t f = 0; f < d.metrics.frames.size(); ++f) {
     const rlpc::FrameMetrics& frame = d.metrics.frames[f];
     const rlpc::FrameSurface& surface = d.surface.frames[f];
@@ -266,7 +270,8 @@ std::optional<rlpc::OutputError> write_csv(const std::string& path, const rlpc::
             "," + digits(frame.ramanathan_psnr_db) + "," + digits(surface.sted_spatial) + "," +
             digits(surface.sted_temporal) + "," + digits(surface.ring_spatial) + "," +
             digits(surface.ring_temporal) + "," + digits(surface.mean_normal_angle) + "," +
-            digits(surface.max_normal_angle) + "\n";
+            digits(surface.max_normal_angle) + "," + digits(surface.vertex_normals) + "," +
+            digits(surface.normal_flicker) + "\n";
   }
   auto file = rlpc::OutputFile::create(path);
   if (!file) return file.error();
@@ -329,9 +334,12 @@ void print_report(const rlpc::ComparisonPair& pair, const Rate& rate,
   }
   std::printf("  ring      %.6g, edge difference in one ring (spatial %.6g, temporal %.6g)\n",
               s.ring_difference, s.ring_spatial, s.ring_temporal);
-  std::printf("  normals   mean deviation %.4g degrees, largest %.4g, frame %u, triangle %u\n",
-              s.mean_normal_angle, s.max_normal_angle, s.max_normal_frame,
-              s.max_normal_triangle);
+  std::printf("  normals   of vertices: RMS deviation %.4g degrees, RMS flicker %.4g\n",
+              s.vertex_normals, s.normal_flicker);
+  std::printf(
+      "            of triangles: mean deviation %.4g degrees, largest %.4g, frame %u, triangle "
+      "%u\n",
+      s.mean_normal_angle, s.max_normal_angle, s.max_normal_frame, s.max_normal_triangle);
 }
 
 int check_gates(const Options& o, const rlpc::Metrics& m) {

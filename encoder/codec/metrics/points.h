@@ -23,6 +23,10 @@ inline double dot(const Vec3d& a, const Vec3d& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+inline Vec3d cross(const Vec3d& a, const Vec3d& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 inline double length(const Vec3d& a) { return std::sqrt(dot(a, a)); }
 
 inline double distance(std::span<const float> xyz, std::uint32_t a, std::uint32_t b) {

@@ -9,10 +9,6 @@
 namespace rlpc {
 namespace {
 
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 // Returns a normal whose length is twice the area of the triangle.
 Vec3d normal(std::span<const float> xyz, const Triangle& t) {
   const Vec3d p = point_at(xyz, t[0]);
@@ -28,7 +24,8 @@ SurfaceAccumulator::SurfaceAccumulator(std::uint32_t num_vertices,
     : triangles_(triangles.begin(), triangles.end()),
       sted_spatial_(num_vertices, triangles),
       sted_temporal_(num_vertices),
-      ring_(num_vertices, triangles) {}
+      ring_(num_vertices, triangles),
+      flicker_(num_vertices, triangles) {}
 
 void SurfaceAccumulator::add_frame(std::span<const float> original,
                                    std::span<const float> decoded) {
@@ -40,6 +37,13 @@ void SurfaceAccumulator::add_frame(std::span<const float> original,
   if (!frames_.empty()) frames_.back().ring_temporal = ring.previous_temporal;
   frame.ring_spatial = ring.spatial;
   add_normals(original, decoded, frame);
+  const std::vector<double> exact(original.begin(), original.end());
+  const SquaredAngles deviation = normal_deviation(triangles_, exact, decoded);
+  const SquaredAngles change = flicker_.add_frame(original, decoded);
+  frame.vertex_normals = deviation.rms();
+  frame.normal_flicker = change.rms();
+  deviation_ += deviation;
+  change_ += change;
   frames_.push_back(frame);
 }
 
@@ -96,6 +100,8 @@ SurfaceMetrics SurfaceAccumulator::result() const {
   if (frames_.size() > 2) m.ring_temporal /= num_frames - 2;
   m.ring_difference = root_of_squares(m.ring_spatial, m.ring_temporal);
   if (area_sum_ > 0) m.mean_normal_angle = angle_sum_ / area_sum_;
+  m.vertex_normals = deviation_.rms();
+  m.normal_flicker = change_.rms();
   return m;
 }
 

@@ -1,5 +1,5 @@
 // Perceptual distortion of a decoded animation: STED (sted.h), the edge difference in one ring
-// (ring_edge_difference.h), and normal deviation.
+// (ring_edge_difference.h), and deviations of normals, those of vertices in vertex_normals.h.
 //
 // Normal angle: the angle between the original and the decoded normal of a triangle. Triangles
 // without area in the original are skipped; those that lost their area count as 90 degrees.
@@ -13,6 +13,7 @@
 #include "common/codec/mesh/mesh.h"
 #include "encoder/codec/metrics/ring_edge_difference.h"
 #include "encoder/codec/metrics/sted.h"
+#include "encoder/codec/metrics/vertex_normals.h"
 
 namespace rlpc {
 
@@ -24,6 +25,8 @@ struct FrameSurface {
   double mean_normal_angle = 0;  // degrees
   double max_normal_angle = 0;
   std::uint32_t max_normal_triangle = 0;
+  double vertex_normals = 0;  // RMS deviation, degrees
+  double normal_flicker = 0;  // RMS change of the error of vertex normals; 0 in the first frame
 };
 
 struct SurfaceMetrics {
@@ -41,6 +44,8 @@ struct SurfaceMetrics {
   double max_normal_angle = 0;
   std::uint32_t max_normal_frame = 0;  // the first frame and triangle with this angle
   std::uint32_t max_normal_triangle = 0;
+  double vertex_normals = 0;  // RMS deviation over vertices and frames, degrees
+  double normal_flicker = 0;  // RMS change of the error from frame to frame, degrees
   std::vector<FrameSurface> frames;
 };
 
@@ -67,6 +72,9 @@ class SurfaceAccumulator {
   std::vector<FrameSurface> frames_;
   double angle_sum_ = 0;  // degrees times area
   double area_sum_ = 0;
+  NormalFlicker flicker_;
+  SquaredAngles deviation_;
+  SquaredAngles change_;
 };
 
 }  // namespace rlpc

@@ -40,6 +40,8 @@ inline nlohmann::ordered_json surface_json(const SurfaceMetrics& m) {
           {"ring_edge_difference_spatial", m.ring_spatial},
           {"ring_edge_difference_temporal", m.ring_temporal},
           {"ring_edge_difference_dt", RingEdgeDifference::kDt},
+          {"vertex_normal_rms_degrees", m.vertex_normals},
+          {"normal_flicker_rms_degrees", m.normal_flicker},
           {"mean_normal_angle_degrees", m.mean_normal_angle},
           {"max_normal_angle_degrees", m.max_normal_angle},
           {"max_normal_angle_frame", m.max_normal_frame},
