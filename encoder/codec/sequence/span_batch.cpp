@@ -76,6 +76,12 @@ void SpanBatch::choose_again() {
   for (Span& span : spans_) span.coder.reset();
 }
 
+void SpanBatch::keep_num_components() {
+  for (Span& span : spans_) {
+    if (span.coder) span.coder->keep_num_components();
+  }
+}
+
 bool SpanBatch::uses_earlier_rigs() const {
   return std::any_of(spans_.begin(), spans_.end(),
                      [](const Span& span) { return span.vertices == Vertices::kEarlier; });

@@ -70,6 +70,8 @@ class SpanBatch {
   bool use_last_resort();
   // Forgets the choices of earlier steps: the next one decides.
   void choose_again();
+  // Calls SpanCoder::keep_num_components() for all spans.
+  void keep_num_components();
   // Whether some spans use shared rigs of earlier ones.
   bool uses_earlier_rigs() const;
   // Whether any span has been encoded as several kinds of GOF, as none was clearly the best.

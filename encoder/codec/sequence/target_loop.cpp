@@ -85,6 +85,7 @@ InputResult<TargetResult> search_steps(const TargetTask& task, SpanBatch& batch,
     if (!trial) return trial.error();
     const double value = measured(task, *trial, batch.num_frames());
     const bool better = search.report(value, trial->gof_bytes, expected_kg(task, batch));
+    if (search.is_located()) batch.keep_num_components();
     // Bones, rest positions and factors of earlier rigs do not follow the step.
     const bool is_stuck =
         !search.met() && batch.uses_earlier_rigs() && trial->gof_bytes == bytes;

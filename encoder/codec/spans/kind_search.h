@@ -26,6 +26,7 @@ class KindSearch : public SpanCoder {
   bool needs_frames(double step, double analysis_step) const override;
   EncodedSpan encode(double step, double analysis_step) override;
   void release_analysis() override;
+  void keep_num_components() override { coders_[chosen_]->keep_num_components(); }
   bool is_contested() const override { return is_contested_; }
 
  private:

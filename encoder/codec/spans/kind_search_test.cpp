@@ -16,6 +16,7 @@ namespace {
 struct KindCalls {
   int encodings = 0;
   int released = 0;
+  int keeps = 0;
   double last_step = 0.0;
 };
 
@@ -41,6 +42,7 @@ class FakeCoder : public SpanCoder {
     return encoded;
   }
   void release_analysis() override { ++calls_.released; }
+  void keep_num_components() override { ++calls_.keeps; }
   std::optional<double> step_in_reach(double step, const SpanCost& rival) override {
     if (8.0 * static_cast<double>(answers_.expected) > rival.bits) return std::nullopt;
     return answers_.scale * step;
@@ -149,6 +151,17 @@ TEST(KindSearch, ReleasesTheAnalysesOfItsCoders) {
   search.release_analysis();
   EXPECT_EQ(f.calls[0]->released, 2);
   EXPECT_EQ(f.calls[1]->released, 1);
+}
+
+TEST(KindSearch, KeepsTheNumberOfComponentsOfTheChosenKind) {
+  Fixture f;
+  f.add({.bytes = 100});
+  f.add({.bytes = 80});
+  KindSearch search(f.kinds, f.frames, Preset::kMedium);
+  Fixture::bytes(search, 10.0);
+  search.keep_num_components();
+  EXPECT_EQ(f.calls[0]->keeps, 0);
+  EXPECT_EQ(f.calls[1]->keeps, 1);
 }
 
 }  // namespace

@@ -99,6 +99,9 @@ class SpanCoder {
   // analyse for; an analysis is reused as long as analysis_step stays the same.
   virtual EncodedSpan encode(double step, double analysis_step) = 0;
   virtual void release_analysis() = 0;
+  // Codes as many components from now on as in the last encoding: the error then follows the
+  // step without jumps.
+  virtual void keep_num_components() {}
   // Returns a step at which encode() can be expected to err about as much as another encoding
   // of the span, and `step` where that is not known; none if it can be expected to cost clearly
   // more there.

@@ -99,6 +99,10 @@ std::optional<double> SplitCoder::step_in_reach(double step, const SpanCost& riv
   return std::nullopt;
 }
 
+void SplitCoder::keep_num_components() {
+  for (const auto& part : parts_) part->coder->keep_num_components();
+}
+
 void SplitCoder::release_analysis() {
   for (const auto& part : parts_) part->coder->release_analysis();
 }

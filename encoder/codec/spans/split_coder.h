@@ -23,6 +23,7 @@ class SplitCoder : public SpanCoder {
   bool needs_frames(double step, double analysis_step) const override;
   EncodedSpan encode(double step, double analysis_step) override;
   void release_analysis() override;
+  void keep_num_components() override;
   // Asks the coders of at most two GOFs.
   std::optional<double> step_in_reach(double step, const SpanCost& rival) override;
 

@@ -16,6 +16,7 @@ constexpr std::uint32_t kVertices = 2;
 struct CoderCalls {
   int encodings = 0;
   int released = 0;
+  int keeps = 0;
   std::vector<std::size_t> sizes;  // number of values in the frames, at each encoding
 };
 
@@ -48,6 +49,7 @@ class CopyingCoder : public SpanCoder {
     return encoded;
   }
   void release_analysis() override { ++calls_.released; }
+  void keep_num_components() override { ++calls_.keeps; }
 
  private:
   const SpanFrames& frames_;
@@ -128,6 +130,14 @@ TEST(SplitCoder, ReleasesTheAnalysisOfAll) {
   SplitCoder coder(frames, copying(calls));
   coder.release_analysis();
   EXPECT_EQ(calls.released, 4);
+}
+
+TEST(SplitCoder, KeepsTheNumberOfComponentsOfAll) {
+  const SpanFrames frames = frames_of(8, 4);
+  CoderCalls calls;
+  SplitCoder coder(frames, copying(calls));
+  coder.keep_num_components();
+  EXPECT_EQ(calls.keeps, 4);
 }
 
 }  // namespace

@@ -103,6 +103,8 @@ bool SkinnedSpanCoder::is_valid_for(double step) const {
   // trajectories. With fewer, the error comes from bones and rest positions, and a new analysis
   // must follow the step.
   constexpr std::size_t kEnough = 4;
+  // Near the target, a new analysis for each step brings the error nearest to it.
+  if (follows_step() && kept_) return step == analysis_.step();
   if (follows_step()) return is_within(kBonesServe, step, analysis_.step());
   SkinnedSettings draft = choice_->settings;
   draft.draft = true;
@@ -135,8 +137,12 @@ EncodedSpan SkinnedSpanCoder::encode(double step, double analysis_step) {
   if (!choice_) choose(analysis_step);
   if (!follows_step()) analysis_for(analysis_step);
   if (analysis_.last() == nullptr || !is_valid_for(step)) analysis_for(step);
-  return encode_skinned_gof(context_, *analysis_.last(), choice_->settings, step,
-                            has_followers_);
+  SkinnedSettings settings = choice_->settings;
+  if (kept_) settings.min_trajectories = settings.max_trajectories = *kept_;
+  EncodedSpan encoded =
+      encode_skinned_gof(context_, *analysis_.last(), settings, step, has_followers_);
+  coded_ = encoded.components;
+  return encoded;
 }
 
 void SkinnedSpanCoder::release_analysis() {

@@ -29,6 +29,7 @@ class SkinnedSpanCoder : public SpanCoder {
   bool needs_frames(double step, double analysis_step) const override;
   EncodedSpan encode(double step, double analysis_step) override;
   void release_analysis() override;
+  void keep_num_components() override { kept_ = coded_; }
 
  private:
   // A draft: its step, squared error and analysis.
@@ -56,6 +57,8 @@ class SkinnedSpanCoder : public SpanCoder {
   std::optional<SkinnedCandidate> choice_;
   std::optional<Draft> draft_;           // draft of choice_
   StepCache<SkinnedAnalysis> analysis_;  // analysis of choice_
+  std::size_t coded_ = 0;                // trajectories of the last encoding
+  std::optional<std::size_t> kept_;      // trajectories to code; none: those worth their bits
 };
 
 }  // namespace rlpc

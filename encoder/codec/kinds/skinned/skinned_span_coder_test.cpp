@@ -302,6 +302,28 @@ TEST(SkinnedSpanCoder, HasTheRequestedNumbersOfBonesAndTrajectories) {
 
 // No explicit setting of prediction is clearly better than the automatic choice, which is made
 // by drafts.
+TEST(SkinnedSpanCoder, KeepsItsNumberOfTrajectories) {
+  const Animation a(bending);
+  EncoderSettings settings = fast();
+  settings.main.bones = 1;
+  const SkinnedContext context = a.context(settings);
+  SkinnedSpanCoder free(context, a.frames);
+  const std::uint32_t count = free.encode(40.0, 40.0).components;
+  EXPECT_LT(free.encode(1000.0, 40.0).components, count);
+  EXPECT_GT(free.encode(10.0, 40.0).components, count);
+  SkinnedSpanCoder keeping(context, a.frames);
+  keeping.encode(40.0, 40.0);
+  keeping.keep_num_components();
+  double error = 0.0;
+  for (const double step : {10.0, 30.0, 50.0, 160.0, 1000.0}) {
+    const EncodedSpan encoded = keeping.encode(step, 40.0);
+    EXPECT_EQ(encoded.components, count) << step;
+    const double before = error;
+    error = cost_of(encoded, a.frames).squared_error;
+    EXPECT_GT(error, before) << step;
+  }
+}
+
 TEST(SkinnedSpanCoder, ChoosesTheCheapestPrediction) {
   const double step = 20.0;
   const auto cost = [&](const Animation& a, const EncoderSettings& settings) {

@@ -8,17 +8,20 @@
 namespace rlpc {
 namespace {
 
-constexpr int kMaxTrials = 18;            // fixed: a search ends
-constexpr double kTolerance = 0.02;       // fixed: below the target; a promise to users
-constexpr double kFinestStep = 0.5;       // fixed: grid steps
-constexpr double kCoarsestStep = 0x1p24;  // fixed: grid steps
-constexpr double kFarthest = 50.0;        // fixed: factor from one step to the next
+constexpr int kMaxTrials = 18;  // fixed: a search ends
+// Parts of the target that an encoding may be below it to end the search; promises to users.
+// The largest error jumps with the step, so that more encodings would rarely come closer.
+constexpr double kTolerance = 0.006;          // fixed: 0.3 % of the bytes
+constexpr double kToleranceOfLargest = 0.02;  // fixed: time
+constexpr double kFinestStep = 0.5;           // fixed: grid steps
+constexpr double kCoarsestStep = 0x1p24;      // fixed: grid steps
+constexpr double kFarthest = 50.0;            // fixed: factor from one step to the next
 // Exponents are clamped to this factor above and below the usual one.
 constexpr double kSteepest = 2.0;  // fixed: a guard against wrong expectations
 // The maximum error is a discontinuous function of the step. At a jump, narrowing the bracket
 // is useless. Instead, coarser steps beyond the bracket are sampled: one of them may happen to
 // meet the target.
-constexpr double kNarrow = 1.0 + kTolerance / 4.0;  // fixed: by the tolerance
+constexpr double kNarrow = 1.0 + kToleranceOfLargest / 4.0;  // fixed: by the tolerance
 // tuned (off: 0): Number of coarser steps that are tried where the largest error jumps, with
 // --max-error. Each is one more encoding, and may be smaller by chance.
 constexpr int kSamples = 8;
@@ -73,7 +76,7 @@ bool TargetSearch::report(double measured, std::uint64_t bytes, const Expected& 
     finished_ = true;
     return true;
   }
-  const bool better = best_.offer(measured, bytes, kTolerance);
+  const bool better = best_.offer(measured, bytes, tolerance());
   if (analysis_step() != frozen_ && is_near(measured)) {
     // Earlier measurements belong to other analyses.
     frozen_ = analysis_step();
@@ -86,11 +89,18 @@ bool TargetSearch::report(double measured, std::uint64_t bytes, const Expected& 
   } else {
     bracket_.add_coarse(step_, measured);
   }
+  constexpr double kNear = 0.1;  // fixed: the best number of components barely changes
+  is_located_ = is_located_ || bracket_.closed() ||
+                std::abs(measured - target_.value) < kNear * target_.value;
   choose_next(measured, expected);
   return better;
 }
 
-double TargetSearch::aim() const { return target_.value * (1.0 - 0.5 * kTolerance); }
+double TargetSearch::tolerance() const {
+  return target_.kind == Target::kMaxError ? kToleranceOfLargest : kTolerance;
+}
+
+double TargetSearch::aim() const { return target_.value * (1.0 - 0.5 * tolerance()); }
 
 // Whether the current analysis is valid for the step at which the target is expected.
 bool TargetSearch::is_near(double measured) const {
@@ -116,9 +126,9 @@ double TargetSearch::step_for(double value, const Expected& expected) const {
 void TargetSearch::choose_next(double measured, const Expected& expected) {
   // The KG error jumps where one more trajectory is worth coding: there, interpolation misses
   // even in a narrow bracket, and so would further trials.
-  constexpr int kUsualTrials = 4;     // fixed: a promise about time
-  constexpr int kCostlyTrials = 3;    // fixed: a promise about time
-  constexpr double kFarBelow = 0.04;  // fixed: part of the target; a promise to users
+  constexpr int kUsualTrials = 5;     // fixed: a promise about time
+  constexpr int kCostlyTrials = 5;    // fixed: a promise about time
+  constexpr double kFarBelow = 0.02;  // fixed: part of the target; a promise to users
   const bool enough_of_costly = is_costly_ && target_.kind == Target::kKg &&
                                 trials_ >= kCostlyTrials && best_.met_within(kFarBelow);
   const bool enough =

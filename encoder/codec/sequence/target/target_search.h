@@ -38,8 +38,8 @@ class TargetSearch {
   // Sets the first step, before the first encoding, to the one at which the target is expected,
   // if the target is an error. expected: from analyses made for analysis_step().
   void begin_at(const Expected& expected);
-  // Declares encodings slow: a KG error of up to 4 % below the target ends the search after
-  // three.
+  // Declares encodings slow: a KG error of up to 2 % below the target ends the search after
+  // five.
   void set_costly() { is_costly_ = true; }
   double step() const { return step_; }
   // Returns the step to analyse for. Near the target it is kept as long as it is valid for
@@ -53,6 +53,8 @@ class TargetSearch {
   // estimate from the analyses of this encoding.
   bool report(double measured, std::uint64_t bytes, const Expected& expected = {});
   bool finished() const { return finished_; }
+  // Whether the target lies near the last step, or between two steps that were tried.
+  bool is_located() const { return is_located_; }
   // Whether the best encoding does not exceed the target.
   bool met() const { return !target_.has_search() || best_.met(); }
 
@@ -61,6 +63,7 @@ class TargetSearch {
     return step > range_.finest * analysis_step && step < range_.coarsest * analysis_step;
   }
   bool is_near(double measured) const;
+  double tolerance() const;
   double aim() const;
   void choose_next(double measured, const Expected& expected);
   void sample_beyond_jump();
@@ -83,6 +86,7 @@ class TargetSearch {
   bool was_interpolated_ = false;  // step_ was interpolated in a narrow bracket
   double sampled_from_ = 0.0;      // start of the samples beyond a jump; 0: not sampling
   int samples_ = 0;
+  bool is_located_ = false;
   bool finished_ = false;
 };
 

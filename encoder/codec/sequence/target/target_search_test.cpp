@@ -49,11 +49,12 @@ Outcome search(const Target& target, const std::function<double(double)>& measur
   return outcome;
 }
 
-void expect_within_two_per_cent(const Target& target, const Outcome& outcome) {
+void expect_near(const Target& target, const Outcome& outcome) {
   EXPECT_LT(outcome.trials, kEnough);
   EXPECT_TRUE(outcome.met);
   EXPECT_LE(outcome.best, target.value);
-  EXPECT_GE(outcome.best, 0.98 * target.value);
+  const double tolerance = target.kind == Target::kMaxError ? 0.02 : 0.006;
+  EXPECT_GE(outcome.best, (1.0 - tolerance) * target.value);
 }
 
 TEST(TargetSearch, WithoutTargetTakesOneTrial) {
@@ -72,9 +73,9 @@ TEST(TargetSearch, ReachesAnErrorFromBelow) {
           const Target target{kind, value};
           // The step that meets the target is well within the range of steps.
           const double at = 300.0 * factor;
-          expect_within_two_per_cent(target, search(target, [&](double step) {
-                                       return value * std::pow(step / at, power);
-                                     }));
+          expect_near(target, search(target, [&](double step) {
+                        return value * std::pow(step / at, power);
+                      }));
         }
       }
     }
@@ -89,10 +90,9 @@ TEST(TargetSearch, ReachesARateFromBelow) {
         SCOPED_TRACE(testing::Message() << value << " " << power << " " << factor);
         const Target target{Target::kBpvf, value};
         const double at = 300.0 * factor;
-        expect_within_two_per_cent(target, search(target, [&](double step) {
-                                     return 0.2 * value +
-                                            0.8 * value * std::pow(step / at, -power);
-                                   }));
+        expect_near(target, search(target, [&](double step) {
+                      return 0.2 * value + 0.8 * value * std::pow(step / at, -power);
+                    }));
       }
     }
   }
@@ -112,7 +112,7 @@ TEST(TargetSearch, ReportsTheClosestFromBelowOfNoisyMeasurements) {
                         1.0};
     double closest = 0.0;
     const Outcome outcome = search(target, [&](double step) {
-      const double noise = 1.0 + 0.005 * (static_cast<double>(random() % 2001) / 1000.0 - 1.0);
+      const double noise = 1.0 + 0.0015 * (static_cast<double>(random() % 2001) / 1000.0 - 1.0);
       const double measured = noise * std::pow(step / 900.0, rate ? -0.5 : 0.9);
       if (measured <= 1.0) closest = std::max(closest, measured);
       return measured;
@@ -121,7 +121,7 @@ TEST(TargetSearch, ReportsTheClosestFromBelowOfNoisyMeasurements) {
     EXPECT_TRUE(outcome.met);
     EXPECT_LE(outcome.best, 1.0);
     EXPECT_EQ(outcome.best, closest);
-    if (outcome.best >= 0.98) ++within;
+    if (outcome.best >= (seed % 3 == 2 ? 0.98 : 0.994)) ++within;
     ++all;
   }
   EXPECT_GE(within, all * 95 / 100);
@@ -186,13 +186,13 @@ int trials_with(const TargetSearch::Expected& expected, double value, double fac
     if (search.report(measured, bytes, expected)) outcome.best = measured;
   }
   outcome.met = search.met();
-  expect_within_two_per_cent(target, outcome);
+  expect_near(target, outcome);
   return outcome.trials;
 }
 
 TEST(TargetSearch, TakesTwoTrialsIfTheExpectationIsOffByAFactor) {
   for (const double value : {0.2, 0.5, 0.9}) {
-    EXPECT_EQ(trials_with(expected_error, value, 0.991), 1);
+    EXPECT_EQ(trials_with(expected_error, value, 0.998), 1);
     for (const double factor : {0.7, 0.9, 1.1, 1.4}) {
       SCOPED_TRACE(testing::Message() << value << " " << factor);
       EXPECT_LE(trials_with(expected_error, value, factor), 2);
@@ -218,7 +218,7 @@ TEST(TargetSearch, AnalysesAnewForTheExpectedStep) {
     const double made = search.analysis_step();
     EXPECT_DOUBLE_EQ(made, search.step() / 1.25);
     // Aims at the middle of the tolerance.
-    search.begin_at([&](double step) { return 0.99 * 0.5 * step / (factor * made); });
+    search.begin_at([&](double step) { return 0.997 * 0.5 * step / (factor * made); });
     EXPECT_NEAR(search.step(), factor * made, 1e-3 * made);
     EXPECT_DOUBLE_EQ(search.analysis_step(), search.step() / 1.25);
   }
@@ -243,8 +243,8 @@ TEST(TargetSearch, EndsSoonWhereTheErrorJumps) {
   EXPECT_LE(outcome.trials, 7);
 }
 
-// Errors that are powers of the step are within 4 % by then.
-TEST(TargetSearch, EndsAfterThreeEncodingsIfTheyAreCostly) {
+// Errors that are powers of the step are near by then.
+TEST(TargetSearch, EndsAfterFiveEncodingsIfTheyAreCostly) {
   for (const double power : {0.3, 0.5, 0.8, 1.0, 1.3}) {
     for (const double factor : {0.02, 1.0, 30.0}) {
       SCOPED_TRACE(testing::Message() << power << " " << factor);
@@ -258,9 +258,9 @@ TEST(TargetSearch, EndsAfterThreeEncodingsIfTheyAreCostly) {
         ++trials;
         if (s.report(measured, bytes_with(s.step()))) best = measured;
       }
-      EXPECT_LE(trials, 3);
+      EXPECT_LE(trials, 5);
       EXPECT_LE(best, 0.1);
-      EXPECT_GE(best, 0.096);
+      EXPECT_GE(best, 0.0994);
     }
   }
 }

@@ -43,6 +43,7 @@ struct SkinnedSettings {
   std::uint32_t layer_groups = 0;         // 0: chosen by size
   std::vector<std::uint32_t> layer_cuts;  // EncoderSettings::main
   std::size_t max_trajectories = 1024;
+  std::size_t min_trajectories = 0;  // coded even if they are not worth their bits
 
   // tuned: Bits of a quantised influence of a bone. Finer weights cost bits at every vertex;
   // coarser ones leave errors where bones meet.

@@ -107,7 +107,8 @@ CodedTrajectories code_trajectories(const OrderedMesh& mesh, const SkinnedAnalys
   std::optional<int> fraction_bits;
   if (shared != nullptr) fraction_bits = rig.fraction_bits;
   TemporalLimits limits{
-      std::min<std::size_t>(settings.max_trajectories, kLevels.back().max_components)};
+      std::min<std::size_t>(settings.max_trajectories, kLevels.back().max_components),
+      settings.min_trajectories};
   for (;;) {
     TemporalValues temporal = code_temporal_values(analysis, settings, step, limits);
     if (temporal.size() == 0) return {{}, choose_slice_cuts(settings, 0.0, 0)};

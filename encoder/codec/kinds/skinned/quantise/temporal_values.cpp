@@ -37,7 +37,7 @@ class TemporalCoder {
     values.gof_trajectories.resize(analysis_.gofs.size());
     std::size_t& l = values.num_tried;
     for (; l < analysis_.pc.temporal.size() && values.size() < limits.max_trajectories; ++l) {
-      if (!code(l, limits.min_eighths, values)) break;
+      if (!code(l, limits, values)) break;
     }
     return values;
   }
@@ -45,10 +45,10 @@ class TemporalCoder {
  private:
   // Codes a component with the step that gives equal distortion. False: the component is not
   // worth its bits.
-  bool code(std::size_t l, int min_eighths, TemporalValues& values) {
+  bool code(std::size_t l, const TemporalLimits& limits, TemporalValues& values) {
     const std::size_t num_frames = tracks_.num_frames();
     const std::vector<double>& temporal = analysis_.pc.temporal[l];
-    const int eighths = eighths_of(l, min_eighths);
+    const int eighths = eighths_of(l, limits.min_eighths);
     const double unit = power_of_eighths(eighths) / step_;
     std::vector<std::array<double, 3>> wanted(num_frames);
     for (std::size_t f = 0; f < num_frames; ++f) {
@@ -56,7 +56,7 @@ class TemporalCoder {
     }
     SpanTracks::Coded coded = tracks_.code(wanted, unit);
     const double saved = analysis_.pc.energy[l] * (1.0 - coded.cost.error * unit * unit);
-    if (saved < min_worth(coded.cost.bits, l)) return false;
+    if (l >= limits.min_trajectories && saved < min_worth(coded.cost.bits, l)) return false;
     values.eighths.push_back(eighths);
     values.indices.push_back(tracks_.indices(coded));
     tracks_.follow(coded);

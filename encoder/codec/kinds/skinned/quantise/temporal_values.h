@@ -34,6 +34,7 @@ struct TemporalValues {
 
 struct TemporalLimits {
   std::size_t max_trajectories = 0;
+  std::size_t min_trajectories = 0;
   int min_eighths = -1000;  // finest product of steps that fits the format
 };
 
