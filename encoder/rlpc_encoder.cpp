@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "encoder/codec/sequence/check_settings.h"
+#include "encoder/codec/sequence/normals_target.h"
 #include "encoder/codec/sequence/search_list.h"
 #include "encoder/codec/sequence/sequence_encoder.h"
 #include "encoder/codec/sequence/stream_verifier.h"
@@ -69,13 +70,18 @@ InputResult<Found> best_of(FrameSource& source, const EncoderSettings& settings,
 
 InputResult<EncodeReport> encode(FrameSource& source, const EncoderSettings& settings,
                                  const ByteSink& sink, const Progress& progress) {
-  const EncoderSettings complete = complete_settings(settings, source.clips(), source.asset());
+  EncoderSettings complete = complete_settings(settings, source.clips(), source.asset());
   if (auto error = check_settings(complete)) return *error;
   if (auto error = check_clips(complete.clips, source.num_frames())) return *error;
   if (auto error = check_attributes(complete.attributes, source.attributes())) return *error;
   if (complete.target.kind == Target::kMaxError) {
     const auto rounding = check_rounding(source, complete.target.value);
     if (!rounding) return rounding.error();
+  }
+  if (complete.target.max_normals > 0.0) {
+    const auto kg = expected_kg(source, source.triangles(), complete.target);
+    if (!kg) return kg.error();
+    complete.target.expected_kg = *kg;
   }
   // The encoders refer to their settings.
   const std::vector<Search> searches =

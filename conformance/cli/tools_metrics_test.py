@@ -8,7 +8,7 @@ import math
 import random
 import statistics
 
-from tools_testing import ToolsTest, main, read_pc2, write_obj, write_pc2
+from tools_testing import ToolsTest, main, read_pc2, squared_angles, write_obj, write_pc2
 
 DT, WEIGHT = 0.0003, 9.144e-5  # STED
 BEFORE, AFTER = 5, 4  # steps of its window
@@ -135,6 +135,7 @@ class Metrics(ToolsTest):
                 report, columns = self.compared()
                 self.check_sted(triangles, a, b, report["surface"], columns)
                 self.check_ring(triangles, a, b, report["surface"], columns)
+                self.check_normals(triangles, a, b, report["surface"], columns)
                 self.check_errors(a, b, report["metrics"])
                 self.check_psnr(a, b, report["metrics"], columns)
 
@@ -159,6 +160,22 @@ class Metrics(ToolsTest):
         part = math.fsum(temporal) / max(len(a) - 2, 1)
         self.near(surface["ring_edge_difference"], math.hypot(statistics.fmean(spatial), part),
                   "ring")
+
+    def check_normals(self, triangles, a, b, surface, columns):
+        found = [squared_angles(triangles, f, g) for f, g in zip(a, b)]
+        for rms, (total, area, _) in zip(columns["vertex_normal_rms_degrees"], found, strict=True):
+            self.near(rms, math.sqrt(total / area) if area else 0.0, "vertex normals")
+        area = math.fsum(area for _, area, _ in found)
+        whole = math.sqrt(math.fsum(total for total, _, _ in found) / area) if area else 0.0
+        self.near(surface["vertex_normal_rms_degrees"], whole, "vertex normals")
+        changes, areas = [], []
+        for (_, _, before), (_, _, after) in zip(found, found[1:]):
+            changes += [math.degrees(math.dist(e, d)) ** 2 * w
+                        for (e, _), (d, w) in zip(before, after)]
+            areas += [w for _, w in after]
+        whole = math.sqrt(math.fsum(changes) / math.fsum(areas)) if any(areas) else 0.0
+        self.near(surface["normal_flicker_rms_degrees"], whole, "flicker")
+        self.assertEqual(columns["normal_flicker_rms_degrees"][0], 0)
 
     def check_errors(self, a, b, metrics):
         error = math.fsum(math.dist(p, q) ** 2 for f, g in zip(a, b) for p, q in zip(f, g))

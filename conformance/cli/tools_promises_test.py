@@ -11,7 +11,8 @@ import math
 import random
 import struct
 
-from tools_testing import INPUTS, ToolsTest, main, read_obj, read_pc2, write_obj, write_pc2
+from tools_testing import (INPUTS, NAMES, ToolsTest, main, read_obj, read_pc2, squared_angles,
+                           write_obj, write_pc2)
 
 TRIANGLES = [(0, 1, 2), (2, 1, 3)]
 
@@ -84,6 +85,57 @@ class Promises(ToolsTest):
                       for i in range(0, 12, 3))
         self.assertLessEqual(largest, bound, options)
         return report, largest
+
+    def rms_of_normals(self, name):
+        """RMS deviation of vertex normals in all frames of a bundled animation."""
+        self.ok("rlpcdec", self.path("a.rlpc"), "-o", self.path("a.pc2"))
+        triangles = read_obj(INPUTS / f"{name}.obj")[1]
+        total, area = 0.0, 0.0
+        for original, decoded in zip(read_pc2(INPUTS / f"{name}.pc2"),
+                                     read_pc2(self.path("a.pc2")), strict=True):
+            frames = [[frame[i:i + 3] for i in range(0, len(frame), 3)]
+                      for frame in (original, decoded)]
+            angles = squared_angles(triangles, *frames)
+            total, area = total + angles[0], area + angles[1]
+        return math.sqrt(total / area)
+
+    def test_normals_deviate_at_most_as_asked(self):
+        for name in NAMES:
+            for profile, degrees in (("main", 0.5), ("high", 3)):
+                with self.subTest(name=name, profile=profile):
+                    report = self.ok("rlpcenc", INPUTS / f"{name}.obj", "--points",
+                                     INPUTS / f"{name}.pc2", "--normals", degrees,
+                                     "-o", self.path("a.rlpc"), "--keep-order", "--json",
+                                     "--profile", profile, "--preset", "fast").json()
+                    self.assertTrue(report["target_met"])
+                    found = self.rms_of_normals(name)
+                    self.assertLessEqual(found, degrees * (1 + 1e-9))
+                    self.assertGreater(found, 0.9 * degrees)
+                    self.assertAlmostEqual(
+                        report["metrics"]["vertex_normal_rms_degrees"], found, delta=1e-6)
+
+    def test_with_a_kg_error_both_are_bounds(self):
+        name = "elephant"
+        nearest = []
+        for kg in (0.02, 2):
+            report = self.ok("rlpcenc", INPUTS / f"{name}.obj", "--points",
+                             INPUTS / f"{name}.pc2", "--normals", 1, "--kg", kg, "-o",
+                             self.path("a.rlpc"), "--keep-order", "--json").json()
+            error = report["metrics"]["kg_error_percent"]
+            normals = self.rms_of_normals(name)
+            self.assertLessEqual(error, kg)
+            self.assertLessEqual(normals, 1 + 1e-9)
+            nearest.append(normals > error / kg)
+            self.assertGreater(max(error / kg, normals), 0.98)
+        self.assertEqual(nearest, [False, True])
+
+    def test_what_bounds_normals_cannot_be_combined_with(self):
+        for options in (("--bpvf", 2), ("--max-error", 1), ("--lossless",),
+                        ("--quality", "good"), ("--profile", "high", "--low-delay")):
+            self.fails(64, "--normals", "rlpcenc", INPUTS / "elephant.obj", "-o",
+                       self.path("b.rlpc"), "--normals", 1, *options)
+        self.fails(64, "--normals", "rlpcenc", INPUTS / "elephant.obj", "-o",
+                   self.path("b.rlpc"), "--normals", 0)
 
     def test_errors_are_those_of_the_numbers_in_the_input(self):
         frames = self.far_away()

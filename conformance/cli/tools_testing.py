@@ -3,6 +3,7 @@
 import argparse
 import array
 import json
+import math
 import os
 import pathlib
 import resource
@@ -16,6 +17,43 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INPUTS = ROOT / "streams" / "inputs"
 NAMES = ("elephant", "curtain", "robot_arm")
+
+
+def vertex_normals(triangles, points):
+    """[vertex]: the sum of the normals of its triangles, weighted by area, and a third of their
+    area."""
+    found = [[[0.0, 0.0, 0.0], 0.0] for _ in points]
+    for t in triangles:
+        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = (points[v] for v in t)
+        ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
+        n = (uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx)
+        for v in t:
+            for c in range(3):
+                found[v][0][c] += n[c]
+            found[v][1] += math.hypot(*n) / 6
+    return [(tuple(n), area) for n, area in found]
+
+
+def unit_or_zero(n):
+    size = math.hypot(*n)
+    return tuple(c / size for c in n) if size else (0.0, 0.0, 0.0)
+
+
+def squared_angles(triangles, a, b):
+    """Of the vertex normals of two frames: the sum of squared degrees times area; the sum of
+    areas; and the errors as vectors."""
+    total, areas, errors = [], [], []
+    for (n, area), (m, _) in zip(vertex_normals(triangles, a), vertex_normals(triangles, b)):
+        n, m = unit_or_zero(n), unit_or_zero(m)
+        errors.append((tuple(y - x for x, y in zip(n, m)), area if any(n) else 0.0))
+        if any(n):
+            cross = (n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2],
+                     n[0] * m[1] - n[1] * m[0])
+            along = sum(x * y for x, y in zip(n, m))
+            angle = math.degrees(math.atan2(math.hypot(*cross), along)) if any(m) else 90.0
+            total.append(angle ** 2 * area)
+            areas.append(area)
+    return math.fsum(total), math.fsum(areas), errors
 
 
 def searched(few, many):

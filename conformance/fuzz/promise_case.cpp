@@ -205,6 +205,7 @@ void CaseMaker::make_target() {
       break;
     case 6:
       target = {Target::kKg, std::exp2(-6.0 + 8.0 * unit())};
+      if (chance(2)) target.max_normals = std::exp2(-4.0 + 8.0 * unit());
       break;
     default:
       target = {Target::kBpvf, std::exp2(7.0 * unit())};
@@ -238,7 +239,8 @@ void CaseMaker::make_settings() {
   EncoderSettings& s = case_.settings;
   make_target();
   case_.way = static_cast<PromiseCase::Way>(chance(3) ? 1 + below(2) : 0);
-  if (s.target.kind == Target::kBpvf && case_.way == PromiseCase::kLowDelay) {
+  const bool is_searched = s.target.kind == Target::kBpvf || s.target.max_normals > 0.0;
+  if (is_searched && case_.way == PromiseCase::kLowDelay) {
     case_.way = PromiseCase::kSpans;
   }
   if (s.target.kind == Target::kLossless && s.target.value == 0.0)

@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "conformance/rlpcval/validator.h"
 #include "decoder/describe_error.h"
@@ -82,6 +85,8 @@ struct Measured {
   double largest_error = 0.0;
   long double squared_error = 0.0L;
   long double spread = 0.0L;
+  long double squared_angles = 0.0L;  // of vertex normals: degrees squared, times area
+  long double area = 0.0L;
   bool is_exact = true;    // equal as floats
   bool is_nearest = true;  // nearest on the grid
 
@@ -91,6 +96,57 @@ struct Measured {
     return 100.0 * static_cast<double>(std::sqrt(squared_error / spread));
   }
 };
+
+using Vector3 = std::array<long double, 3>;
+
+Vector3 cross(const Vector3& a, const Vector3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+long double length(const Vector3& a) {
+  return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+// Returns the sum of the normals of the triangles around each vertex; `area`: a third of their
+// areas.
+template <class T>
+std::vector<Vector3> normals_of(std::span<const Triangle> triangles, const std::vector<T>& xyz,
+                                std::vector<long double>& area) {
+  std::vector<Vector3> normals(xyz.size() / 3);
+  area.assign(normals.size(), 0.0L);
+  for (const Triangle& t : triangles) {
+    Vector3 side[2];
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        side[i][c] = static_cast<long double>(xyz[3 * std::size_t{t[i + 1]} + c]) -
+                     xyz[3 * std::size_t{t[0]} + c];
+      }
+    }
+    const Vector3 n = cross(side[0], side[1]);
+    for (const std::uint32_t v : t) {
+      for (std::size_t c = 0; c < 3; ++c) normals[v][c] += n[c];
+      area[v] += length(n) / 6.0L;
+    }
+  }
+  return normals;
+}
+
+void compare_normals(std::span<const Triangle> triangles, const std::vector<double>& frame,
+                     const std::vector<float>& decoded, Measured& m) {
+  std::vector<long double> unused;
+  std::vector<long double> area;
+  const std::vector<Vector3> b = normals_of(triangles, decoded, unused);
+  const std::vector<Vector3> a = normals_of(triangles, frame, area);
+  for (std::size_t v = 0; v < a.size(); ++v) {
+    if (length(a[v]) == 0.0L) continue;
+    const long double along = a[v][0] * b[v][0] + a[v][1] * b[v][1] + a[v][2] * b[v][2];
+    const long double angle = length(b[v]) == 0.0L
+                                  ? 90.0L
+                                  : std::atan2(length(cross(a[v], b[v])), along) * 180.0L /
+                                        std::numbers::pi_v<long double>;
+    m.squared_angles += angle * angle * area[v];
+    m.area += area[v];
+  }
+}
 
 // Relative to the first vertex, so that it is 0 if all coincide.
 void add_spread(const std::vector<double>& frame, Measured& m) {
@@ -106,10 +162,11 @@ void add_spread(const std::vector<double>& frame, Measured& m) {
   }
 }
 
-void compare_frame(const SequenceHeader& header, const std::vector<double>& frame,
-                   const std::vector<std::int32_t>& positions,
+void compare_frame(const SequenceHeader& header, std::span<const Triangle> triangles,
+                   const std::vector<double>& frame, const std::vector<std::int32_t>& positions,
                    const std::vector<std::uint32_t>& order, Measured& m) {
   const Grid& grid = header.grid;
+  std::vector<float> output(frame.size());
   for (std::size_t v = 0; v < order.size(); ++v) {
     long double squared = 0.0L;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -119,6 +176,7 @@ void compare_frame(const SequenceHeader& header, const std::vector<double>& fram
       const double on_grid = std::ldexp(
           static_cast<double>(positions[3 * v + k]) + grid.origin[k], grid.log2_step);
       const auto decoded = static_cast<float>(on_grid);
+      output[3 * std::size_t{order[v]} + k] = decoded;
       m.is_exact = m.is_exact && decoded == coded;
       m.is_nearest =
           m.is_nearest && std::abs(on_grid - coded) <= std::ldexp(0.5, grid.log2_step);
@@ -129,6 +187,7 @@ void compare_frame(const SequenceHeader& header, const std::vector<double>& fram
     m.largest_error = std::max(m.largest_error, static_cast<double>(std::sqrt(squared)));
   }
   add_spread(frame, m);
+  compare_normals(triangles, frame, output, m);
 }
 
 std::optional<std::string> find_violation(const PromiseStream& stream) {
@@ -145,6 +204,13 @@ std::optional<std::string> find_violation(const PromiseStream& stream) {
 
 // Whether a value exceeds a bound by more than another order of sums explains.
 bool exceeds(double value, double max) { return value > max * (1.0 + 1e-9); }
+
+// Whether the RMS deviation of vertex normals is at most `max` degrees. Other sums may differ
+// where triangles of a vertex cancel out.
+bool keeps_normals(const Measured& m, double max) {
+  constexpr double kOther = 1.0 + 1e-6;
+  return m.squared_angles <= static_cast<long double>(max * kOther * max * kOther) * m.area;
+}
 
 std::optional<std::string> find_broken_promise(const PromiseCase& c,
                                                const PromiseStream& stream,
@@ -174,6 +240,9 @@ std::optional<std::string> find_broken_promise(const PromiseCase& c,
     case Target::kKg:
       if (exceeds(m.kg_error_percent(), target.value)) {
         return "the KG error is " + std::to_string(m.kg_error_percent());
+      }
+      if (target.max_normals > 0.0 && !keeps_normals(m, target.max_normals)) {
+        return "vertex normals deviate more than they may";
       }
       break;
     case Target::kBpvf:
@@ -228,7 +297,7 @@ PromiseResult check_stream(const PromiseCase& c, const PromiseStream& stream) {
     const auto more = decoder->next_frame(positions);
     if (!more) return wrong("does not decode: " + describe_error(more.error()));
     if (!*more) return wrong("ends too early");
-    compare_frame(decoder->header(), frame, positions, order, measured);
+    compare_frame(decoder->header(), c.shape.triangles, frame, positions, order, measured);
   }
   const auto more = decoder->next_frame(positions);
   if (!more || *more) return wrong("does not end well");

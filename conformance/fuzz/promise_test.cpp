@@ -133,6 +133,13 @@ TEST(Promises, AreSeenToBeBroken) {
   other.settings.target = {Target::kBpvf, 0.9 * stream.report.bpvf};
   EXPECT_NE(check_stream(other, stream).what.find("rate"), std::string::npos);
 
+  PromiseCase turned = turned_case(2);
+  turned.settings.target = {Target::kKg, 1.0};
+  const PromiseStream turned_stream = encode_for_test(turned);
+  ASSERT_EQ(check_stream(turned, turned_stream).outcome, Outcome::kKept);
+  turned.settings.target.max_normals = 1e-3;
+  EXPECT_NE(check_stream(turned, turned_stream).what.find("normals"), std::string::npos);
+
   PromiseStream damaged = stream;
   damaged.bytes[damaged.bytes.size() / 2] ^= 1;
   EXPECT_EQ(check_stream(right, damaged).outcome, Outcome::kWrong);

@@ -464,6 +464,10 @@ static void test_encoder_arguments(void) {
   options.target_value = -1;
   CHECK(create_with(&format, &options, text) == RLPC_BAD_INPUT);
   CHECK_TEXT(text, "above zero");
+  options = small_gofs();
+  options.max_normals = 1;
+  CHECK(create_with(&format, &options, text) == RLPC_BAD_INPUT);
+  CHECK_TEXT(text, "vertex normals are bounded only with 'target = kg'");
   for (int i = 0; i < 6; ++i) {
     options = small_gofs();
     uint32_t* const choices[6] = {&options.profile,   &options.preset,   &options.target,
@@ -576,6 +580,33 @@ static void test_temporal_layers(void) {
   CHECK(rlpc_encoder_create(&format, &options, append, &stream, &encoder) == RLPC_BAD_INPUT);
   CHECK_TEXT(rlpc_encoder_error_text(encoder), "temporal layers");
   rlpc_encoder_close(encoder);
+}
+
+// With a bound of vertex normals, the KG error follows from it.
+static void test_normals(void) {
+  static buffer stream;
+  const rlpc_frame_format format = strip_format();
+  double kg_before = 100;
+  for (int i = 0; i < 2; ++i) {
+    rlpc_encode_options options = small_gofs();
+    options.target = RLPC_TARGET_KG;
+    options.target_value = 100;
+    options.max_normals = i == 0 ? 4 : 0.25;
+    rlpc_encoder* encoder;
+    memset(&stream, 0, sizeof stream);
+    CHECK(rlpc_encoder_create(&format, &options, append, &stream, &encoder) == RLPC_OK);
+    float xyz[VALUES];
+    for (unsigned f = 0; f < FRAMES; ++f) {
+      make_frame(f, xyz);
+      CHECK(rlpc_encoder_add_frame(encoder, xyz, VALUES) == RLPC_OK);
+    }
+    rlpc_encode_report report;
+    CHECK(rlpc_encoder_finish(encoder, &report, sizeof report) == RLPC_OK);
+    CHECK(report.target_met == 1);
+    CHECK(report.kg_error_percent < kg_before / 4);
+    kg_before = report.kg_error_percent;
+    rlpc_encoder_close(encoder);
+  }
 }
 
 // A frame is in the stream as soon as it has been added, and the number of frames at its end.
@@ -729,6 +760,7 @@ int main(void) {
   test_encoder_arguments();
   test_encoder_frames();
   test_temporal_layers();
+  test_normals();
   test_low_delay();
   test_coarse_meshes(&stream);
   test_texts();

@@ -128,6 +128,7 @@ std::optional<EncoderSettings> settings_of(const rlpc_encode_options& options) {
   if (options.gof_kind > 0) settings.gof_kind = kKindChoices[options.gof_kind - 1];
   settings.low_delay = options.low_delay != 0;
   settings.target.value = options.target_value;
+  settings.target.max_normals = options.max_normals;
   settings.gof_frames = options.gof_frames;
   settings.components = options.components;
   settings.keep_order = options.keep_order != 0;

@@ -124,8 +124,8 @@ struct InterTools {
 // Hashes of decoded positions in the stream: none, one per GOF, one per frame.
 enum class HashMode : std::uint8_t { kNone, kGof, kFrame };
 
-// Error or rate that the encoder aims for. The result is at most 2 % below it if possible (4 %
-// for a KG error in the High profile), and exceeds it only if the target cannot be met
+// Error or rate that the encoder aims for. The result is at most 0.6 % below it if possible (2
+// % for the largest error), and exceeds it only if the target cannot be met
 // (EncodeReport::target_met).
 struct Target {
   enum Kind : std::uint8_t {
@@ -141,7 +141,16 @@ struct Target {
   };
   Kind kind = kKg;
   double value = 0.1;  // above zero and finite, except for kNone and kLossless
+  // kKg: a second bound, of the RMS deviation of vertex normals (vertex_normals.h), in degrees;
+  // 0: none. Of both bounds, the result comes near the one that it meets last. A KG error of
+  // 100 is no bound beside it: nothing of the shape would be left.
+  double max_normals = 0.0;
+  // kKg with max_normals: KG error at which the bounds are expected to be met, which encode()
+  // sets; 0: not known.
+  double expected_kg = 0.0;
 
+  // Returns the KG error for which choices are made.
+  double likely_kg() const { return expected_kg > 0.0 ? expected_kg : value; }
   // Whether a quantiser step has to be searched for.
   bool has_search() const { return kind != kNone && kind != kLossless; }
 };

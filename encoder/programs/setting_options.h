@@ -12,6 +12,7 @@ namespace rlpc {
 inline constexpr std::array kEncoderOptions = std::to_array<SettingOption>({
     {"profile", "--profile"},
     {"target = kg", "--quality, --kg"},
+    {"max_normals", "--normals"},
     {"target = bpvf", "--bpvf"},
     {"target = max_error", "--max-error"},
     {"target = lossless", "--lossless"},

@@ -251,7 +251,8 @@ MORE = [["--gof", "all"], ["--gof", "1"], ["--gof", "5"], ["--gof", "0"], ["--ke
         ["--layer-groups", "3"], ["--seeds", "spread"], ["--frame", "world"], ["--no-rdo"],
         ["--fps", "24"], ["--fps", "1/0"], ["--axes", "x,z,-y"], ["--axes", "x,x,y"],
         ["--max-memory", "20MB"], ["--max-memory", "1kB"], ["--clip", "a:0-1"], ["--clip", ":"],
-        ["--uv-bits", "4"], ["--normals", "smoothing"], ["--exact-attributes"], ["--json"],
+        ["--uv-bits", "4"], ["--stored-normals", "smoothing"],
+        ["--normals", "2"], ["--exact-attributes"], ["--json"],
         ["--low-delay"], ["--low-delay", "--box", "-2", "-2", "-2", "9", "9", "9"],
         ["--qu", "8", "--qc", "8"], ["--dry-run"], ["--track-levels", "2"], ["--no-weld"],
         ["--no-input-rig"]]

@@ -62,7 +62,8 @@ void MetricsAccumulator::add_frame(std::span<const float> original,
 }
 
 void MetricsAccumulator::add_frame(std::span<const double> original,
-                                   std::span<const float> decoded) {
+                                   std::span<const float> decoded,
+                                   const SquaredAngles& normals) {
   assert(original.size() == 3 * std::size_t{num_vertices_} &&
          decoded.size() == original.size());
   FrameMetrics frame;
@@ -78,6 +79,7 @@ void MetricsAccumulator::add_frame(std::span<const double> original,
   measure_spread(original, frame);
   frame.rms_error = std::sqrt(frame.squared_error / num_vertices_);
   frame.max_error = std::sqrt(max_squared);
+  frame.normals = normals;
   for (std::size_t i = 0; i < original.size(); ++i) {
     const bool first = num_frames_ == 0 && i < 3;
     box_min_[i % 3] = first ? original[i] : std::min(box_min_[i % 3], original[i]);
@@ -91,6 +93,7 @@ void MetricsAccumulator::add_frame(std::span<const double> original,
 void MetricsAccumulator::add_to_totals(const FrameMetrics& frame) {
   squared_error_ += frame.squared_error;
   spread_ += frame.spread;
+  normals_ += frame.normals;
   if (num_frames_ == 0) first_mean_ = frame.mean;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double moved = frame.mean[axis] - first_mean_[axis];
@@ -171,6 +174,7 @@ Metrics MetricsAccumulator::result() const {
   m.rms_sequence_spread = std::sqrt(sequence / count);
   m.rms_error_percent = percent(m.rms_error, m.diagonal);
   m.max_error_percent = percent(m.max_error, m.diagonal);
+  if (normals_.weight > 0.0) m.vertex_normals = normals_.rms();
   m.max_displacement = std::sqrt(max_squared_displacement_);
   finish_psnr(m);
   return m;

@@ -6,8 +6,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
+
+#include "encoder/codec/metrics/vertex_normals.h"
 
 namespace rlpc {
 
@@ -17,6 +20,7 @@ struct FrameMetrics {
   std::array<double, 3> mean = {};  // vertex of the original
   double rms_error = 0;             // units
   double max_error = 0;             // units
+  SquaredAngles normals;            // deviation of vertex normals; empty: not measured
   std::uint32_t max_error_vertex = 0;
   // Vertices of the original that moved since the previous frame; in frame 0: all.
   std::uint32_t moved_vertices = 0;
@@ -43,7 +47,10 @@ struct Metrics {
   double max_error_percent = 0;       // per cent of the diagonal; infinite if only that is 0
   std::uint32_t max_error_frame = 0;  // the first frame and vertex with this error
   std::uint32_t max_error_vertex = 0;
-  double diagonal = 0;          // the original's bounding box over all frames, units
+  double diagonal = 0;  // the original's bounding box over all frames, units
+  // RMS deviation of vertex normals in the frames where it was measured, degrees; none:
+  // nowhere.
+  std::optional<double> vertex_normals;
   double max_displacement = 0;  // largest in the original between adjacent frames, units
   // 20 log10(diagonal / rms_error): the peak is the diagonal. Infinite without an error.
   double diagonal_psnr_db = 0;
@@ -71,8 +78,10 @@ class MetricsAccumulator {
   }
   std::span<const double> last_original() const { return previous_; }
   // Adds the next frame; both have 3 * num_vertices finite values in the same vertex order. The
-  // original may be finer than floats.
-  void add_frame(std::span<const double> original, std::span<const float> decoded);
+  // original may be finer than floats. normals: the deviation of its vertex normals, if it was
+  // measured.
+  void add_frame(std::span<const double> original, std::span<const float> decoded,
+                 const SquaredAngles& normals = {});
   void add_frame(std::span<const float> original, std::span<const float> decoded);
 
   // Adds the frames of `next`, at least one, which has kFrames and follows the last frame here.
@@ -96,6 +105,7 @@ class MetricsAccumulator {
   Metrics totals_;  // only the maximum errors so far
   double squared_error_ = 0;
   double spread_ = 0;
+  SquaredAngles normals_;
   std::array<double, 3> first_mean_ = {};
   std::array<double, 3> mean_sum_ = {};  // sum of the means of frames, relative to the first
   double squared_mean_sum_ = 0;

@@ -53,6 +53,7 @@ double angle(const Vec3d& a, const Vec3d& b) {
 SquaredAngles normal_deviation(std::span<const Triangle> triangles,
                                std::span<const double> original,
                                std::span<const float> decoded) {
+  if (triangles.empty()) return {};
   const VertexNormals a = vertex_normals(triangles, original);
   const VertexNormals b = vertex_normals(triangles, decoded);
   SquaredAngles angles;

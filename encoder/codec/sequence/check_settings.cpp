@@ -329,6 +329,14 @@ std::optional<InputError> check_settings(const EncoderSettings& s) {
   if (s.target.has_search() && !(s.target.value > 0.0 && std::isfinite(s.target.value))) {
     return InputError{"a target must be a number above zero"};
   }
+  if (!(s.target.max_normals >= 0.0 && std::isfinite(s.target.max_normals))) {
+    return InputError{"a bound of vertex normals must be a number of degrees, above zero"};
+  }
+  if (s.target.max_normals > 0.0 && (s.target.kind != Target::kKg || s.low_delay)) {
+    return InputError{
+        "vertex normals are bounded only with 'target = kg', and not with 'low_delay': leave "
+        "out 'max_normals'"};
+  }
   if (s.target.kind == Target::kLossless && s.target.value != 0.0 &&
       !is_position_bits(s.target.value)) {
     return InputError{"positions have 2 to " + std::to_string(kMaxPositionBits) +

@@ -35,6 +35,9 @@ SequenceCoding::SequenceCoding(const SequenceHeader& header, const EncoderSettin
                                std::span<const Triangle> triangles)
     : header_(header),
       settings_(settings),
+      normal_triangles_(settings.target.max_normals > 0.0
+                            ? std::vector<Triangle>(triangles.begin(), triangles.end())
+                            : std::vector<Triangle>{}),
       connectivity_(write_connectivity(header.num_vertices, triangles)),
       topology_(make_topology(header.num_vertices, connectivity_.triangles)),
       input_triangles_(settings.profile == Profile::kBaseline
@@ -131,7 +134,8 @@ InputResult<std::vector<SequenceCoding::MeasuredFrame>> SequenceCoding::measure_
     std::vector<float> decoded(values);
     to_input(frame.positions, decoded);
     frame.metrics.follow(i > 0 ? frames[i - 1].original : before);
-    frame.metrics.add_frame(frame.original, decoded);
+    frame.metrics.add_frame(frame.original, decoded,
+                            normal_deviation(normal_triangles_, frame.original, decoded));
   });
   return frames;
 }

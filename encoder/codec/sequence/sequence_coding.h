@@ -49,6 +49,9 @@ class SequenceCoding {
   const SequenceHeader& header() const { return header_; }
   const ConnectivityCode& connectivity() const { return connectivity_; }
   const SequenceMesh& mesh() const { return mesh_; }
+  // Returns the triangles of the input whose vertex normals are measured; empty unless the
+  // target bounds them.
+  std::span<const Triangle> normal_triangles() const { return normal_triangles_; }
   // Changes the header, but only level and grid. A new grid invalidates all frames and coders
   // made before.
   void set_header(const SequenceHeader& header) { header_ = header; }
@@ -93,6 +96,7 @@ class SequenceCoding {
 
   SequenceHeader header_;
   const EncoderSettings& settings_;
+  std::vector<Triangle> normal_triangles_;
   ConnectivityCode connectivity_;
   Topology topology_;
   std::vector<Triangle> input_triangles_;  // SequenceMesh::input_triangles

@@ -336,6 +336,7 @@ std::optional<InputError> SequenceEncoder::verify(const std::shared_ptr<StreamBu
                                                   EncodeReport& report) {
   StreamVerifier verifier(settings_, coding_->header(), coding_->connectivity().input_vertex,
                           stream, num_threads_);
+  verifier.measure_normals(coding_->normal_triangles());
   if (auto error = verifier.check_frames(source_, 0, source_.num_frames())) return error;
   if (auto error = verifier.finish(report.metrics)) return error;
   report.largest_rounding = verifier.largest_rounding();

@@ -12,6 +12,7 @@
 #include "encoder/codec/sequence/choices/grid_choice.h"
 #include "encoder/codec/sequence/format_header.h"
 #include "encoder/codec/sequence/memory_need.h"
+#include "encoder/codec/sequence/normals_target.h"
 
 namespace rlpc {
 namespace {
@@ -181,6 +182,11 @@ std::optional<InputError> SpanEncoder::encode_span() {
   const FrameRange span = current();
   const auto extent = measure_extent(*buffer_);
   if (!extent) return extent.error();
+  if (coded_.spans == 0 && settings_.target.max_normals > 0.0) {
+    const auto kg = expected_kg(*buffer_, coding_->normal_triangles(), settings_.target);
+    if (!kg) return kg.error();
+    settings_.target.expected_kg = *kg;
+  }
   const auto best = coded_.spans == 0 ? search_first(span, extent->rms_spread)
                                       : search(span, extent->rms_spread);
   if (!best) return best.error();
@@ -223,6 +229,7 @@ std::optional<InputError> SpanEncoder::write(const SpanResult& span) {
   }
   StreamVerifier& verifier =
       out_.verifier(coding_->header(), coding_->connectivity(), num_threads_);
+  verifier.measure_normals(coding_->normal_triangles());
   if (auto error = verifier.check_frames(*buffer_, 0, buffer_->num_frames())) return error;
   return out_.pass_on(sink_);
 }

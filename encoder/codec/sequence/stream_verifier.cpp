@@ -94,7 +94,7 @@ std::optional<InputError> StreamVerifier::check_frame(std::span<const double> ex
   if (auto error = decode()) return error;
   const std::vector<float> decoded = in_input_order(header_.grid, positions_, input_vertex_);
   if (auto error = compare_without_loss(num_checked_ - 1, exact, decoded)) return error;
-  metrics_.add_frame(exact, decoded);
+  metrics_.add_frame(exact, decoded, normal_deviation(normal_triangles_, exact, decoded));
   has_metrics_ = true;
   note_rounding(exact);
   return std::nullopt;
@@ -176,6 +176,10 @@ std::optional<InputError> StreamVerifier::finish(const Metrics& reported) {
     return fault("the largest error is " + text_of(measured.max_error) + " instead of " +
                  text_of(reported.max_error) + ", the RMS error " +
                  text_of(measured.rms_error) + " instead of " + text_of(reported.rms_error));
+  }
+  if (measured.vertex_normals != reported.vertex_normals) {
+    return fault("vertex normals deviate by " + text_of(measured.vertex_normals.value_or(0.0)) +
+                 " degrees (RMS) instead of " + text_of(reported.vertex_normals.value_or(0.0)));
   }
   return std::nullopt;
 }

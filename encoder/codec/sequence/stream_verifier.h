@@ -28,6 +28,8 @@ class StreamVerifier {
   StreamVerifier(const EncoderSettings& settings, const SequenceHeader& header,
                  std::span<const std::uint32_t> input_vertex,
                  std::shared_ptr<StreamBuffer> buffer, std::uint32_t threads);
+  // Measures vertex normals as well. triangles: of the input; must stay.
+  void measure_normals(std::span<const Triangle> triangles) { normal_triangles_ = triangles; }
 
   // Decodes the next frame of the stream and compares it with its original, the numbers of the
   // input [num_vertices][3] in input order. Errors: the stream cannot be decoded; with a
@@ -69,6 +71,7 @@ class StreamVerifier {
   std::uint32_t num_checked_ = 0;
   std::vector<std::int32_t> positions_;  // the last frame, as decoders output it
   std::deque<std::uint64_t> expected_;   // hashes of frames that are to be decoded
+  std::span<const Triangle> normal_triangles_;
   MetricsAccumulator metrics_;
   bool has_metrics_ = false;
   double largest_rounding_ = 0.0;

@@ -10,10 +10,19 @@
 namespace rlpc {
 namespace {
 
+// Returns the KG error or, if vertex normals are bounded as well, the part of the bounds that
+// an encoding uses up, in units of the likely KG error.
+double likely_kg_of(const Target& target, const Metrics& metrics) {
+  if (target.max_normals == 0.0) return metrics.kg_error_percent;
+  return target.likely_kg() *
+         std::max(metrics.kg_error_percent / target.value,
+                  metrics.vertex_normals.value_or(0.0) / target.max_normals);
+}
+
 double measured(const TargetTask& task, const BatchTrial& trial, std::uint32_t num_frames) {
   switch (task.settings.target.kind) {
     case Target::kKg:
-      return trial.metrics.kg_error_percent;
+      return likely_kg_of(task.settings.target, trial.metrics);
     case Target::kMaxError:
       return trial.metrics.max_error;
     case Target::kBpvf:
@@ -121,7 +130,9 @@ TargetSearch search_for(const EncoderSettings& settings, const SequenceHeader& h
                             .coarsest = finer * kAnalysisServes};
   const double step_of_error =
       settings.usable_kind() == GofKind::kInter ? kStepOfFrameError : kStepOfError;
-  return {settings.target, rms_spread * steps_per_unit, steps_per_unit, step_of_error, range};
+  Target target = settings.target;
+  if (target.kind == Target::kKg) target.value = target.likely_kg();
+  return {target, rms_spread * steps_per_unit, steps_per_unit, step_of_error, range};
 }
 
 InputResult<TargetResult> reach_target(const TargetTask& task, SpanBatch& batch) {

@@ -202,6 +202,10 @@ void add_quality_options(CLI::App& app, EncodeCommandLine& line) {
                    ->option_text("WORD")
                    ->group(kQuality);
   auto* kg = app.add_option("--kg", line.kg, "KG error in per cent")->option_text("PERCENT");
+  auto* normals = app.add_option("--normals", line.normals,
+                                 "RMS deviation of vertex normals, in degrees; with --kg, both "
+                                 "are bounds");
+  normals->option_text("DEGREES")->check(kAboveZero)->group(kQuality);
   auto* bpvf = app.add_option("--bpvf", line.bpvf, "Bits per vertex and frame");
   auto* max_error =
       app.add_option("--max-error", line.max_error, "Largest vertex error, in units of INPUT");
@@ -220,6 +224,7 @@ void add_quality_options(CLI::App& app, EncodeCommandLine& line) {
   const std::array<CLI::Option*, 5> options{word, kg, bpvf, max_error, lossless};
   for (auto a = options.begin(); a != options.end(); ++a) {
     for (auto b = a + 1; b != options.end(); ++b) (*a)->excludes(*b);
+    if (*a != kg) normals->excludes(*a);
   }
 }
 

@@ -30,6 +30,7 @@ struct EncodeCommandLine {
   std::optional<double> metres_per_unit;  // for the metadata; none: not noted
   std::vector<std::string> clips;         // NAME:A-B
   std::optional<double> kg;
+  std::optional<double> normals;
   std::optional<double> bpvf;
   std::optional<double> max_error;
   std::optional<int> lossless;  // 0: without a number of bits

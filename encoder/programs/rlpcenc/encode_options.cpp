@@ -112,6 +112,8 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
     if (o.quality == q.word) s.target = {Target::kKg, q.kg_error_percent};
   }
   if (line.kg) s.target = {Target::kKg, *line.kg};
+  constexpr double kAnyKg = 100.0;
+  if (line.normals) s.target = {Target::kKg, line.kg.value_or(kAnyKg), *line.normals};
   if (line.bpvf) s.target = {Target::kBpvf, *line.bpvf};
   if (line.max_error) s.target = {Target::kMaxError, *line.max_error};
   if (line.lossless) s.target = {Target::kLossless, static_cast<double>(*line.lossless)};
@@ -121,8 +123,8 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
     s.inter.layer_cuts = std::exchange(s.main.layer_cuts, {});
     s.inter.rest = std::exchange(s.main.rest, std::nullopt);
   }
-  const bool asked =
-      !o.quality.empty() || line.kg || line.bpvf || line.max_error || line.lossless;
+  const bool asked = !o.quality.empty() || line.kg || line.normals || line.bpvf ||
+                     line.max_error || line.lossless;
   if (s.baseline.qu > 0 && !asked) s.target = {Target::kNone, 0.0};
   if (auto wrong = read_clips(line)) return wrong;
   if (const auto error = check_settings(s)) return error->message;

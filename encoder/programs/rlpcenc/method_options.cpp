@@ -31,11 +31,12 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
                      "where they repeat a small image");
   uv_bits->check(CLI::Range(1, 16))->option_text("N")->group(group);
   add_choice<NormalChoice>(
-      app, "--normals", a.normals,
+      app, "--stored-normals", a.normals,
       {{"auto", NormalChoice::kAuto},
        {"smoothing", NormalChoice::kSmoothing},
        {"exact", NormalChoice::kExact}},
-      "Normals: smoothing (which faces share them; computed for every frame), exact (as in "
+      "Normals of INPUT: smoothing (which faces share them; computed for every frame), exact "
+      "(as in "
       "the first frame; turn with the surface), auto (default: for each, whichever is nearer "
       "to INPUT in decoded frames)")
       ->group(group);

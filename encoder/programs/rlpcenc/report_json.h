@@ -14,19 +14,21 @@ namespace rlpc {
 
 // Returns metrics for rlpcenc and rlpccmp. Infinite values become null.
 inline nlohmann::ordered_json metrics_json(const Metrics& m) {
-  return {{"kg_error_percent", m.kg_error_percent},
-          {"kg_sequence_error_percent", m.kg_sequence_error_percent},
-          {"rms_spread", m.rms_spread},
-          {"rms_sequence_spread", m.rms_sequence_spread},
-          {"rms_error", m.rms_error},
-          {"rms_error_percent", m.rms_error_percent},
-          {"max_error", m.max_error},
-          {"max_error_percent", m.max_error_percent},
-          {"max_error_frame", m.max_error_frame},
-          {"max_error_vertex", m.max_error_vertex},
-          {"diagonal", m.diagonal},
-          {"diagonal_psnr_db", m.diagonal_psnr_db},
-          {"ramanathan_psnr_db", m.ramanathan_psnr_db}};
+  nlohmann::ordered_json json = {{"kg_error_percent", m.kg_error_percent},
+                                 {"kg_sequence_error_percent", m.kg_sequence_error_percent},
+                                 {"rms_spread", m.rms_spread},
+                                 {"rms_sequence_spread", m.rms_sequence_spread},
+                                 {"rms_error", m.rms_error},
+                                 {"rms_error_percent", m.rms_error_percent},
+                                 {"max_error", m.max_error},
+                                 {"max_error_percent", m.max_error_percent},
+                                 {"max_error_frame", m.max_error_frame},
+                                 {"max_error_vertex", m.max_error_vertex},
+                                 {"diagonal", m.diagonal},
+                                 {"diagonal_psnr_db", m.diagonal_psnr_db},
+                                 {"ramanathan_psnr_db", m.ramanathan_psnr_db}};
+  if (m.vertex_normals) json["vertex_normal_rms_degrees"] = *m.vertex_normals;
+  return json;
 }
 
 inline nlohmann::ordered_json surface_json(const SurfaceMetrics& m) {

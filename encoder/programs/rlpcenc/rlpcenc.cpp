@@ -89,6 +89,9 @@ void print_report(const EncodeOptions& o, const Expectation& e) {
   }
   std::printf("  KG error %.4g %%, RMS %.6g, largest %.6g (%.4f %% of the diagonal)\n",
               m.kg_error_percent, m.rms_error, m.max_error, m.max_error_percent);
+  if (m.vertex_normals) {
+    std::printf("  vertex normals: RMS deviation %.4g degrees\n", *m.vertex_normals);
+  }
   if (o.settings.target.kind == Target::kLossless) print_lossless(o, r);
   print_attributes(r);
   for (const TemporalCut& cut : r.temporal_cuts) {

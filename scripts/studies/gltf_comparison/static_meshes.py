@@ -22,7 +22,7 @@ DEFINITIONS = (
     f"Draco: draco_encoder {' '.join(DRACO)}. Its connectivity: the file of the same mesh without "
     "attributes, shrunk so that all positions but one fall into one quantisation step. Its UV and "
     "normals: what the file shrinks by without both.",
-    f"RLPC: rlpcenc --profile high --lossless {POSITION_BITS} --normals exact --normal-bits "
+    f"RLPC: rlpcenc --profile high --lossless {POSITION_BITS} --stored-normals exact --normal-bits "
     f"{NORMAL_BITS} --uv-bits N, N the fewest bits that make the step of UV at most a ninth larger "
     "than that of Draco, which divides the range of the coordinates; connectivity and attributes "
     "with the headers of their units. The grid of positions is that of --lossless: its step is a "
@@ -165,7 +165,7 @@ class Bench:
         stream = folder / "mesh.rlpc"
         said = json.loads(models.run(
             self.toolbox, "rlpcenc", folder / "mesh.obj", "--profile", "high", "--lossless",
-            POSITION_BITS, "--normals", "exact", "--normal-bits", NORMAL_BITS,
+            POSITION_BITS, "--stored-normals", "exact", "--normal-bits", NORMAL_BITS,
             *(("--uv-bits", bits) if bits else ()), "--json", "-o", stream))
         models.run(self.toolbox, "rlpcdec", stream, "--quiet", "-o", folder / "ours_%d.obj")
         return Sizes(said["bits"]["connectivity"] // 8, said["bits"]["attributes"] // 8,

@@ -73,7 +73,7 @@ void SkinnedSpanCoder::choose(double step) {
   std::optional<double> wanted_error;
   if (target.kind == Target::kKg && context_.settings.main.bones == 0) {
     first = survey(bones_.likeliest(step), step);
-    const double part = target.value / 100.0;
+    const double part = target.likely_kg() / 100.0;
     wanted_error = part * part * bones_.squared_spread();
     step = step_of_error(*wanted_error, *first);
   }

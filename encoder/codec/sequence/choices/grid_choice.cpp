@@ -61,7 +61,7 @@ InputResult<Extent> measure_extent(FrameSource& source) {
 }
 
 double finest_error(const Target& target, double rms_spread) {
-  if (target.kind == Target::kKg) return rms_spread * target.value / 100.0;
+  if (target.kind == Target::kKg) return rms_spread * target.likely_kg() / 100.0;
   return target.kind == Target::kMaxError ? target.value : 0.0;
 }
 
