@@ -204,7 +204,7 @@ class PagesInBrowser(PageTest):
                 self.assertGreater(pixels, 2000, (name, fragment))
                 self.framed(box)
                 covered.add(pixels)
-            self.assertEqual(len(re.findall('<path class="now" d="M', dom)), 8)
+            self.assertEqual(len(re.findall('<path class="now" d="M', dom)), 9)
             self.assertEqual(len(covered), 1 + len(more))
 
     def framed(self, box):

@@ -89,9 +89,12 @@ bool TargetSearch::report(double measured, std::uint64_t bytes, const Expected& 
   } else {
     bracket_.add_coarse(step_, measured);
   }
-  constexpr double kNear = 0.1;  // fixed: the best number of components barely changes
-  is_located_ = is_located_ || bracket_.closed() ||
-                std::abs(measured - target_.value) < kNear * target_.value;
+  // fixed: the best number of components barely changes. A rate changes half as much as the
+  // step.
+  constexpr double kNear = 0.1;
+  constexpr double kNearRate = kNear / 2.0;
+  const double near = target_.kind == Target::kBpvf ? kNearRate : kNear;
+  is_located_ = is_located_ || std::abs(measured - target_.value) < near * target_.value;
   choose_next(measured, expected);
   return better;
 }

@@ -53,7 +53,7 @@ class TargetSearch {
   // estimate from the analyses of this encoding.
   bool report(double measured, std::uint64_t bytes, const Expected& expected = {});
   bool finished() const { return finished_; }
-  // Whether the target lies near the last step, or between two steps that were tried.
+  // Whether an encoding has come near the target.
   bool is_located() const { return is_located_; }
   // Whether the best encoding does not exceed the target.
   bool met() const { return !target_.has_search() || best_.met(); }
