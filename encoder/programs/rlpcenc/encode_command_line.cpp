@@ -189,7 +189,7 @@ void add_input_options(CLI::App& app, EncodeCommandLine& line) {
       ->group(kInput);
   add_off_switch(app, "--no-weld", line.options.input.weld,
                  "glTF: keep vertices that coincide in every frame apart")
-      ->group(kInput);
+      ->group(kMoreInput);
   add_off_switch(app, "--no-input-rig", line.options.input.rig,
                  "glTF: look for bones as in a point cache, without those of the file")
       ->group(kMoreInput);
@@ -202,9 +202,8 @@ void add_quality_options(CLI::App& app, EncodeCommandLine& line) {
                    ->option_text("WORD")
                    ->group(kQuality);
   auto* kg = app.add_option("--kg", line.kg, "KG error in per cent")->option_text("PERCENT");
-  auto* normals = app.add_option("--normals", line.normals,
-                                 "RMS deviation of vertex normals, in degrees; with --kg, both "
-                                 "are bounds");
+  auto* normals =
+      app.add_option("--normals", line.normals, "RMS deviation of normals (also with --kg)");
   normals->option_text("DEGREES")->check(kAboveZero)->group(kQuality);
   auto* bpvf = app.add_option("--bpvf", line.bpvf, "Bits per vertex and frame");
   auto* max_error =

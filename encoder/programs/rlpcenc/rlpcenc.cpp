@@ -153,9 +153,11 @@ void tell_if_far_below(const Target& target, const EncodeReport& report) {
              (is_exact ? "this is the highest precision"
                        : "no encoding closer to the target was found"));
   }
-  const double error = target.kind == Target::kMaxError ? report.metrics.max_error
-                                                        : report.metrics.kg_error_percent;
-  if (target.kind != Target::kBpvf && !is_exact && error < kNear * target.value) {
+  const Metrics& m = report.metrics;
+  const double error = target.kind == Target::kMaxError ? m.max_error : m.kg_error_percent;
+  const bool is_near = error >= kNear * target.value ||
+                       (m.vertex_normals && *m.vertex_normals >= kNear * target.max_normals);
+  if (target.kind != Target::kBpvf && !is_exact && !is_near) {
     complain(
         "the error is smaller than requested: no smaller file closer to the target was found");
   }

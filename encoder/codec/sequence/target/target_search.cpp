@@ -92,7 +92,7 @@ bool TargetSearch::report(double measured, std::uint64_t bytes, const Expected& 
   // fixed: the best number of components barely changes. A rate changes half as much as the
   // step.
   constexpr double kNear = 0.1;
-  constexpr double kNearRate = kNear / 2.0;
+  constexpr double kNearRate = kNear / 2.0;  // fixed: the same
   const double near = target_.kind == Target::kBpvf ? kNearRate : kNear;
   is_located_ = is_located_ || std::abs(measured - target_.value) < near * target_.value;
   choose_next(measured, expected);
@@ -129,13 +129,20 @@ double TargetSearch::step_for(double value, const Expected& expected) const {
 void TargetSearch::choose_next(double measured, const Expected& expected) {
   // The KG error jumps where one more trajectory is worth coding: there, interpolation misses
   // even in a narrow bracket, and so would further trials.
-  constexpr int kUsualTrials = 5;     // fixed: a promise about time
+  constexpr int kUsualTrials = 5;  // fixed: a promise about time
+  constexpr double kJump =
+      1.004;  // fixed: the error jumps in a bracket narrower than the tolerance
+  constexpr int kEnoughTrials = 7;    // fixed: the same, far below the target
   constexpr int kCostlyTrials = 5;    // fixed: a promise about time
   constexpr double kFarBelow = 0.02;  // fixed: part of the target; a promise to users
   const bool enough_of_costly = is_costly_ && target_.kind == Target::kKg &&
                                 trials_ >= kCostlyTrials && best_.met_within(kFarBelow);
-  const bool enough =
-      (was_interpolated_ && best_.met() && trials_ >= kUsualTrials) || enough_of_costly;
+  const bool is_jump =
+      target_.kind == Target::kKg && bracket_.closed() && bracket_.within(kJump);
+  const bool enough_of_usual =
+      (was_interpolated_ && trials_ >= kUsualTrials && best_.met_within(kFarBelow)) ||
+      (is_jump && trials_ >= kEnoughTrials && best_.met());
+  const bool enough = enough_of_usual || enough_of_costly;
   if (best_.close() || enough || trials_ >= kMaxTrials) {
     finished_ = true;
     return;
@@ -171,9 +178,9 @@ void TargetSearch::narrow_bracket(double aim) {
     finished_ = true;
     return;
   }
-  constexpr int kHalving = 3;         // fixed: keeps interpolation from stalling
-  constexpr double kNarrowKg = 1.06;  // fixed: where errors are linear to within the tolerance
+  constexpr int kHalving = 3;  // fixed: keeps interpolation from stalling
   const bool halves = trials_ % kHalving == 0;
+  constexpr double kNarrowKg = 1.06;  // fixed: where errors are linear to within the tolerance
   was_interpolated_ = !halves && target_.kind == Target::kKg && bracket_.within(kNarrowKg);
   step_ = halves ? bracket_.middle() : bracket_.interpolate(aim);
 }
