@@ -124,8 +124,8 @@ struct InterTools {
 // Hashes of decoded positions in the stream: none, one per GOF, one per frame.
 enum class HashMode : std::uint8_t { kNone, kGof, kFrame };
 
-// Error or rate that the encoder aims for. The result is at most 0.6 % below it if possible (2
-// % for the largest error), and exceeds it only if the target cannot be met
+// Error or rate that the encoder aims for. If possible, the result is at most 0.6 % below it,
+// or 2 % if it is the largest error. It exceeds the target only if that cannot be met
 // (EncodeReport::target_met).
 struct Target {
   enum Kind : std::uint8_t {

@@ -22,7 +22,7 @@ class Noise {
  public:
   double next() {
     constexpr std::uint32_t kFactor = 1664525;      // fixed: Numerical Recipes
-    constexpr std::uint32_t kSummand = 1013904223;  // fixed: the same
+    constexpr std::uint32_t kSummand = 1013904223;  // fixed: Numerical Recipes
     state_ = kFactor * state_ + kSummand;
     constexpr double kHalfWidth = 1.7320508075688772;  // fixed: square root of 3
     constexpr double kHalf = 0x1p31;                   // fixed: of all numbers

@@ -1,4 +1,5 @@
-// Foresees the KG error at which a bound of vertex normals is met.
+// Estimates, before anything is encoded, the KG error at which a bound of vertex normals is
+// met.
 #pragma once
 
 #include <span>

@@ -78,6 +78,11 @@ decoded vertices, divided by the RMS distance of the vertices from the centre of
 their frame. rlpcenc warns if the RMS error exceeds 3 % of the median edge
 length, which is a mean normal deviation of about one degree.
 
+--normals bounds what smooth shading shows: the angle between the original and
+the decoded normal of a vertex, which is the sum of the normals of its
+triangles, weighted by area. RMS over vertices and frames, weighted by area.
+With --kg, both are bounds, and the result comes near one of them.
+
 --lossless restores every coordinate as a 32-bit float (-0 as 0), exactly or as
 the float nearest to the number in INPUT: rlpcenc reports the largest distance.
 --lossless BITS first rounds coordinates to the finest grid, with a step that is

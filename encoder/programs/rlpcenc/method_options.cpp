@@ -36,9 +36,8 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
        {"smoothing", NormalChoice::kSmoothing},
        {"exact", NormalChoice::kExact}},
       "Normals of INPUT: smoothing (which faces share them; computed for every frame), exact "
-      "(as in "
-      "the first frame; turn with the surface), auto (default: for each, whichever is nearer "
-      "to INPUT in decoded frames)")
+      "(as in the first frame; turn with the surface), auto (default: for each, whichever is "
+      "nearer to INPUT in decoded frames)")
       ->group(group);
   auto* const normal_bits = app.add_option(
       "--normal-bits", a.normal_bits,

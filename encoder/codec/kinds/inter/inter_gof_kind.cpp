@@ -18,7 +18,7 @@ namespace {
 
 // tuned: Vertices of a sample with kFrames frames; more if there are fewer frames.
 constexpr std::uint32_t kVertices = 1800;
-constexpr std::uint32_t kFrames = 65;  // fixed: those of a sample (inter_sample)
+constexpr std::uint32_t kFrames = 65;  // fixed: frames of a sample (inter_sample)
 // tuned: Maximum number of vertices of a sample.
 constexpr std::uint32_t kMaxVertices = 2500;
 // tuned (off: 0): Estimates above the rival by less than this factor may be wrong: at the

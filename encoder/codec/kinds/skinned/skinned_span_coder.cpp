@@ -141,8 +141,19 @@ EncodedSpan SkinnedSpanCoder::encode(double step, double analysis_step) {
   if (kept_) settings.min_trajectories = settings.max_trajectories = *kept_;
   EncodedSpan encoded =
       encode_skinned_gof(context_, *analysis_.last(), settings, step, has_followers_);
-  coded_ = encoded.components;
+  coded_.emplace_back(step, encoded.components);
   return encoded;
+}
+
+// Of numbers that were worth their bits at about the last step, takes the smallest: where they
+// differ much, the components between are barely worth theirs.
+void SkinnedSpanCoder::keep_num_components() {
+  if (kept_ || coded_.empty()) return;
+  constexpr double kNear = 1.2;  // fixed: farther steps are too coarse
+  for (const auto& [step, count] : coded_) {
+    if (is_within(kNear, step, coded_.back().first))
+      kept_ = std::min(kept_.value_or(count), count);
+  }
 }
 
 void SkinnedSpanCoder::release_analysis() {

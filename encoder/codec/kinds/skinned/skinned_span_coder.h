@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "encoder/codec/kinds/skinned/search/bone_search.h"
 #include "encoder/codec/kinds/skinned/search/skinned_context.h"
@@ -29,7 +31,7 @@ class SkinnedSpanCoder : public SpanCoder {
   bool needs_frames(double step, double analysis_step) const override;
   EncodedSpan encode(double step, double analysis_step) override;
   void release_analysis() override;
-  void keep_num_components() override { kept_ = coded_; }
+  void keep_num_components() override;
 
  private:
   // A draft: its step, squared error and analysis.
@@ -55,10 +57,10 @@ class SkinnedSpanCoder : public SpanCoder {
   BoneSearch bones_;
   // Bones and tools, chosen for the step at which the target is expected.
   std::optional<SkinnedCandidate> choice_;
-  std::optional<Draft> draft_;           // draft of choice_
-  StepCache<SkinnedAnalysis> analysis_;  // analysis of choice_
-  std::size_t coded_ = 0;                // trajectories of the last encoding
-  std::optional<std::size_t> kept_;      // trajectories to code; none: those worth their bits
+  std::optional<Draft> draft_;                         // draft of choice_
+  StepCache<SkinnedAnalysis> analysis_;                // analysis of choice_
+  std::vector<std::pair<double, std::size_t>> coded_;  // step and trajectories of each encoding
+  std::optional<std::size_t> kept_;  // trajectories to code; none: those worth their bits
 };
 
 }  // namespace rlpc

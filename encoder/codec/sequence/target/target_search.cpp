@@ -82,21 +82,37 @@ bool TargetSearch::report(double measured, std::uint64_t bytes, const Expected& 
     frozen_ = analysis_step();
     bracket_ = {};
   }
-  // As the step grows, the rate falls and errors rise.
+  add_to_bracket(measured);
+  if (!is_located_ && is_here(measured)) {
+    // Earlier encodings may have other numbers of components.
+    is_located_ = true;
+    bracket_ = {};
+    add_to_bracket(measured);
+  }
+  choose_next(measured, expected);
+  return better;
+}
+
+// As the step grows, the rate falls and errors rise.
+void TargetSearch::add_to_bracket(double measured) {
   const bool fine = (target_.kind == Target::kBpvf) != (measured <= target_.value);
   if (fine) {
     bracket_.add_fine(step_, measured);
   } else {
     bracket_.add_coarse(step_, measured);
   }
+}
+
+// Whether the target is near the last step, or between two steps that are.
+bool TargetSearch::is_here(double measured) const {
   // fixed: the best number of components barely changes. A rate changes half as much as the
   // step.
   constexpr double kNear = 0.1;
-  constexpr double kNearRate = kNear / 2.0;  // fixed: the same
+  constexpr double kNearRate = kNear / 2.0;  // fixed: see above
+  constexpr double kApart = 1.2;             // fixed: of two steps, for the same reason
   const double near = target_.kind == Target::kBpvf ? kNearRate : kNear;
-  is_located_ = is_located_ || std::abs(measured - target_.value) < near * target_.value;
-  choose_next(measured, expected);
-  return better;
+  return std::abs(measured - target_.value) < near * target_.value ||
+         (bracket_.closed() && bracket_.within(kApart));
 }
 
 double TargetSearch::tolerance() const {
@@ -129,10 +145,9 @@ double TargetSearch::step_for(double value, const Expected& expected) const {
 void TargetSearch::choose_next(double measured, const Expected& expected) {
   // The KG error jumps where one more trajectory is worth coding: there, interpolation misses
   // even in a narrow bracket, and so would further trials.
-  constexpr int kUsualTrials = 5;  // fixed: a promise about time
-  constexpr double kJump =
-      1.004;  // fixed: the error jumps in a bracket narrower than the tolerance
-  constexpr int kEnoughTrials = 7;    // fixed: the same, far below the target
+  constexpr int kUsualTrials = 5;     // fixed: a promise about time
+  constexpr int kEnoughTrials = 7;    // fixed: a promise about time where the error jumps
+  constexpr double kJump = 1.004;     // fixed: width of a bracket, less than the tolerance
   constexpr int kCostlyTrials = 5;    // fixed: a promise about time
   constexpr double kFarBelow = 0.02;  // fixed: part of the target; a promise to users
   const bool enough_of_costly = is_costly_ && target_.kind == Target::kKg &&

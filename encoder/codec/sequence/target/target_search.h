@@ -63,6 +63,8 @@ class TargetSearch {
     return step > range_.finest * analysis_step && step < range_.coarsest * analysis_step;
   }
   bool is_near(double measured) const;
+  void add_to_bracket(double measured);
+  bool is_here(double measured) const;
   double tolerance() const;
   double aim() const;
   void choose_next(double measured, const Expected& expected);

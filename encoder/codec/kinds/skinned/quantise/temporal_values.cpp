@@ -17,6 +17,18 @@ namespace {
 // Products of steps, in eighths of an octave, have a scale_idx up to this one.
 constexpr int kMaxEighths = kMaxScaleIdx - 8 * 4;  // fixed: format
 
+// tuned (off: 1): Largest factor of kTemporalError in the High profile, where spatial factors
+// adapt to decoded temporal values and make up for their errors.
+constexpr double kLargestFactor = 2.4;
+// tuned: Spatial factors for each temporal value of a trajectory, from which on that factor
+// exceeds 1. The more vertices, the less of the rate temporal values take.
+constexpr double kFactorsOfValue = 2.0;
+
+// Whether a rig has one bone, and spatial factors that are predicted in layers.
+bool has_layers_of_factors(const SharedRig& rig) {
+  return rig.bones.size() == 1 && rig.prediction == Prediction::kLayers;
+}
+
 double largest_magnitude(const std::vector<double>& values) {
   double max = 0.0;
   for (const double x : values) max = std::max(max, std::abs(x));
@@ -74,7 +86,7 @@ class TemporalCoder {
 
   // Returns the exponent of the product of both steps, 2^(eighths / 8), which the stream codes.
   int eighths_of(std::size_t l, int min_eighths) const {
-    const double error = temporal_error(analysis_.rig);
+    const double error = temporal_error(analysis_.rig, tracks_.num_frames());
     const double wanted = step_ * std::sqrt(error / importance(l)) * step_;
     const double min = step_ * largest_magnitude(analysis_.pc.temporal[l]) / kMaxTemporal;
     return std::clamp(static_cast<int>(round_to_int(8.0 * det_log2(std::max(wanted, min)))),
@@ -117,6 +129,14 @@ class TemporalCoder {
 };
 
 }  // namespace
+
+double temporal_error(const SharedRig& rig, std::size_t num_frames) {
+  if (rig.bones.size() > 1) return kTemporalErrorOfBones;
+  if (!has_layers_of_factors(rig)) return kTemporalError;
+  const double factors_of_value =
+      static_cast<double>(rig.influences.size()) / (3.0 * static_cast<double>(num_frames));
+  return kTemporalError * std::clamp(factors_of_value / kFactorsOfValue, 1.0, kLargestFactor);
+}
 
 TemporalValues code_temporal_values(const SkinnedAnalysis& analysis,
                                     const SkinnedSettings& settings, double step,

@@ -16,10 +16,9 @@ namespace rlpc {
 // bones. The residual of bone motion is confined to few vertices, so that its temporal values
 // may be coarser.
 inline constexpr double kTemporalErrorOfBones = 2.0;
-// Returns the squared error of a temporal value relative to that of a spatial one.
-inline double temporal_error(const SharedRig& rig) {
-  return rig.bones.size() > 1 ? kTemporalErrorOfBones : kTemporalError;
-}
+// Returns the squared error of a temporal value relative to that of a spatial one. num_frames:
+// of all GOFs that use the rig.
+double temporal_error(const SharedRig& rig, std::size_t num_frames);
 
 struct TemporalValues {
   std::vector<std::vector<Trajectory>>

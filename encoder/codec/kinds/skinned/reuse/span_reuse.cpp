@@ -146,7 +146,8 @@ RigRemainder SpanReuse::remainder(const FrameRange& span, bool has_temporal) con
 // Returns the exponent of the step of temporal values, 2^(eighths / 8), with the meaning that
 // it has in TemporalValues. largest: largest magnitude of the values.
 int SpanReuse::eighths_of(std::size_t l, double largest) const {
-  const double wanted = step_ * std::sqrt(temporal_error(rig_) / factors_.energy(l));
+  const double wanted =
+      step_ * std::sqrt(temporal_error(rig_, frames_.num_frames) / factors_.energy(l));
   return static_cast<int>(
       round_to_int(8.0 * det_log2(std::max(wanted, largest / kMaxTemporal))));
 }
