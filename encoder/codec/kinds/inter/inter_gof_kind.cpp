@@ -16,11 +16,6 @@
 namespace rlpc {
 namespace {
 
-// tuned: Vertices of a sample with kFrames frames; more if there are fewer frames.
-constexpr std::uint32_t kVertices = 1800;
-constexpr std::uint32_t kFrames = 65;  // fixed: frames of a sample (inter_sample)
-// tuned: Maximum number of vertices of a sample.
-constexpr std::uint32_t kMaxVertices = 2500;
 // tuned (off: 0): Estimates above the rival by less than this factor may be wrong: at the
 // border of a region, vertices have fewer neighbours than in the mesh.
 constexpr double kMargin = 1.4;
@@ -29,10 +24,6 @@ constexpr double kMargin = 1.4;
 constexpr std::uint32_t kLarger = 4;
 // tuned (off: 0): Its estimates above the rival by less than this factor may be wrong.
 constexpr double kLargerMargin = 1.0;
-
-std::uint32_t vertices_of_sample(std::uint32_t num_frames) {
-  return std::min(kVertices * kFrames / std::min(num_frames, kFrames), kMaxVertices);
-}
 
 // Choices at a step hold for all steps within kAnalysisServes.
 class InterSpanCoder : public SpanCoder {
@@ -84,7 +75,7 @@ void InterSpanCoder::choose(double step, const StartTrial& start) {
   const auto numbers = patches_of(settings_, is_open_ended, num_frames);
   auto patterns = patterns_of(settings_, is_open_ended, num_frames);
   std::uint32_t patches = numbers.front();
-  if (settings_.preset != Preset::kSlow && frames_.num_vertices > 2 * kSmallestSample) {
+  if (settings_.preset != Preset::kSlow && InterSample::saves_time(frames_.num_vertices)) {
     const auto compared = choices_of_patches({patterns.front()}, numbers);
     patches = cheapest_at_start(compared, num_frames, start).num_patches;
     if (patterns.size() > 1) patterns = {sample().cheapest_pattern(step)};
@@ -111,7 +102,7 @@ std::optional<double> InterSpanCoder::step_in_reach(double step, const SpanCost&
 // Returns the sample, which is made once.
 InterSample& InterSpanCoder::sample() {
   if (!sample_) {
-    const std::uint32_t count = vertices_of_sample(frames_.num_frames);
+    const std::uint32_t count = InterSample::usual_vertices(frames_.num_frames);
     sample_ = std::make_unique<InterSample>(mesh_, settings_, frames_, count);
   }
   return *sample_;

@@ -13,6 +13,11 @@ namespace {
 
 // tuned: Frames of a sample. They hold a whole period of the longest pattern.
 constexpr std::uint32_t kWindow = 65;
+// tuned: Vertices of a sample with kWindow frames; more if there are fewer frames.
+constexpr std::uint32_t kVertices = 1800;
+// tuned: Maximum number of vertices of a sample, unless more are asked for.
+constexpr std::uint32_t kMaxVertices = 2500;
+
 // tuned (off: 0): Other patterns, patches or the remaining frames save at most this factor.
 constexpr double kOthers = 1.25;
 
@@ -50,6 +55,14 @@ InterSample::InterSample(const SequenceMesh& mesh, const EncoderSettings& settin
       meshes_(topology_, sample_.triangles, true),
       mesh_{mesh.header, topology_, sample_.triangles},
       maker_(mesh_, meshes_[Prediction::kLayers], settings_, frames_, num_frames_) {}
+
+bool InterSample::saves_time(std::uint32_t num_vertices) {
+  return num_vertices > 2 * kSmallestSample;
+}
+
+std::uint32_t InterSample::usual_vertices(std::uint32_t num_frames) {
+  return std::min(kVertices * kWindow / window_of(num_frames), kMaxVertices);
+}
 
 // Returns the expected cost of the whole GOF.
 SpanCost InterSample::whole(const InterTrial& trial) const {

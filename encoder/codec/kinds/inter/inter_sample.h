@@ -36,6 +36,11 @@ class InterSample {
   InterSample(const InterSample&) = delete;
   InterSample& operator=(const InterSample&) = delete;
 
+  // Whether the sample is a small part of the mesh.
+  static bool saves_time(std::uint32_t num_vertices);
+  // Returns the maximum number of vertices of a sample that costs little.
+  static std::uint32_t usual_vertices(std::uint32_t num_frames);
+
   std::uint32_t num_vertices() const { return frames_.num_vertices; }
   // Estimates what the cheapest choice takes; none if that is clearly more than `limit` times
   // the bits of the rival. step: as in SpanCoder::encode().
