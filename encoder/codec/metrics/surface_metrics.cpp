@@ -25,7 +25,7 @@ SurfaceAccumulator::SurfaceAccumulator(std::uint32_t num_vertices,
       sted_spatial_(num_vertices, triangles),
       sted_temporal_(num_vertices),
       ring_(num_vertices, triangles),
-      flicker_(num_vertices, triangles) {}
+      normal_errors_(num_vertices, triangles) {}
 
 void SurfaceAccumulator::add_frame(std::span<const float> original,
                                    std::span<const float> decoded) {
@@ -37,13 +37,11 @@ void SurfaceAccumulator::add_frame(std::span<const float> original,
   if (!frames_.empty()) frames_.back().ring_temporal = ring.previous_temporal;
   frame.ring_spatial = ring.spatial;
   add_normals(original, decoded, frame);
-  const std::vector<double> exact(original.begin(), original.end());
-  const SquaredAngles deviation = normal_deviation(triangles_, exact, decoded);
-  const SquaredAngles change = flicker_.add_frame(original, decoded);
-  frame.vertex_normals = deviation.rms();
-  frame.normal_flicker = change.rms();
-  deviation_ += deviation;
-  change_ += change;
+  const NormalErrors::OfFrame errors = normal_errors_.add_frame(original, decoded);
+  frame.vertex_normals = errors.deviation.rms();
+  frame.normal_flicker = errors.flicker.rms();
+  normal_deviation_ += errors.deviation;
+  normal_flicker_ += errors.flicker;
   frames_.push_back(frame);
 }
 
@@ -100,8 +98,8 @@ SurfaceMetrics SurfaceAccumulator::result() const {
   if (frames_.size() > 2) m.ring_temporal /= num_frames - 2;
   m.ring_difference = root_of_squares(m.ring_spatial, m.ring_temporal);
   if (area_sum_ > 0) m.mean_normal_angle = angle_sum_ / area_sum_;
-  m.vertex_normals = deviation_.rms();
-  m.normal_flicker = change_.rms();
+  m.vertex_normals = normal_deviation_.rms();
+  m.normal_flicker = normal_flicker_.rms();
   return m;
 }
 

@@ -72,9 +72,9 @@ class SurfaceAccumulator {
   std::vector<FrameSurface> frames_;
   double angle_sum_ = 0;  // degrees times area
   double area_sum_ = 0;
-  NormalFlicker flicker_;
-  SquaredAngles deviation_;
-  SquaredAngles change_;
+  NormalErrors normal_errors_;
+  SquaredAngles normal_deviation_;
+  SquaredAngles normal_flicker_;
 };
 
 }  // namespace rlpc

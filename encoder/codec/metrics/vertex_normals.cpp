@@ -48,14 +48,9 @@ double angle(const Vec3d& a, const Vec3d& b) {
   return kDegrees * 2.0 * std::asin(std::min(length(minus(a, b)) / 2.0, 1.0));
 }
 
-}  // namespace
-
-SquaredAngles normal_deviation(std::span<const Triangle> triangles,
-                               std::span<const double> original,
-                               std::span<const float> decoded) {
-  if (triangles.empty()) return {};
-  const VertexNormals a = vertex_normals(triangles, original);
-  const VertexNormals b = vertex_normals(triangles, decoded);
+// Returns the squared angles between the normals of two frames; the areas are those of the
+// first.
+SquaredAngles deviation(const VertexNormals& a, const VertexNormals& b) {
   SquaredAngles angles;
   for (std::size_t v = 0; v < a.normal.size(); ++v) {
     if (is_zero(a.normal[v])) continue;
@@ -66,22 +61,32 @@ SquaredAngles normal_deviation(std::span<const Triangle> triangles,
   return angles;
 }
 
-NormalFlicker::NormalFlicker(std::uint32_t num_vertices, std::span<const Triangle> triangles)
+}  // namespace
+
+SquaredAngles normal_deviation(std::span<const Triangle> triangles,
+                               std::span<const double> original,
+                               std::span<const float> decoded) {
+  if (triangles.empty()) return {};
+  return deviation(vertex_normals(triangles, original), vertex_normals(triangles, decoded));
+}
+
+NormalErrors::NormalErrors(std::uint32_t num_vertices, std::span<const Triangle> triangles)
     : triangles_(triangles.begin(), triangles.end()), error_(num_vertices) {}
 
-SquaredAngles NormalFlicker::add_frame(std::span<const float> original,
-                                       std::span<const float> decoded) {
+NormalErrors::OfFrame NormalErrors::add_frame(std::span<const float> original,
+                                              std::span<const float> decoded) {
   const VertexNormals a = vertex_normals(std::span<const Triangle>(triangles_), original);
   const VertexNormals b = vertex_normals(std::span<const Triangle>(triangles_), decoded);
-  SquaredAngles angles;
+  OfFrame errors{deviation(a, b), {}};
   for (std::size_t v = 0; v < error_.size(); ++v) {
     const Vec3d error = minus(b.normal[v], a.normal[v]);
     const double change = kDegrees * length(minus(error, error_[v]));
     error_[v] = error;
-    if (has_frame_ && !is_zero(a.normal[v])) angles += {change * change * a.area[v], a.area[v]};
+    if (!has_frame_ || is_zero(a.normal[v])) continue;
+    errors.flicker += {change * change * a.area[v], a.area[v]};
   }
   has_frame_ = true;
-  return angles;
+  return errors;
 }
 
 }  // namespace rlpc

@@ -36,14 +36,20 @@ SquaredAngles normal_deviation(std::span<const Triangle> triangles,
                                std::span<const double> original,
                                std::span<const float> decoded);
 
-// Measures how much the error of each vertex normal, as a vector, differs from that in the
-// frame before, as an angle: a constant error does not flicker.
-class NormalFlicker {
+// Compares the vertex normals of consecutive frames.
+class NormalErrors {
  public:
-  NormalFlicker(std::uint32_t num_vertices, std::span<const Triangle> triangles);
+  struct OfFrame {
+    SquaredAngles deviation;  // as normal_deviation() returns it
+    // How much the error of each normal, as a vector, differs from that in the frame before, as
+    // an angle: a constant error does not flicker. Nothing in the first frame.
+    SquaredAngles flicker;
+  };
 
-  // Adds the next frame. Returns the change since the frame before; nothing in the first frame.
-  SquaredAngles add_frame(std::span<const float> original, std::span<const float> decoded);
+  NormalErrors(std::uint32_t num_vertices, std::span<const Triangle> triangles);
+
+  // Adds the next frame.
+  OfFrame add_frame(std::span<const float> original, std::span<const float> decoded);
 
  private:
   std::vector<Triangle> triangles_;
