@@ -19,7 +19,7 @@ enum class Images {
 // or one whose scanlines take more than 2^28 bytes.
 //
 // Takes 1 s per 15 MB of scanlines where it is worth it, and a tenth of that where it is not:
-// a part in the middle is deflated first. Memory: one more image, and 1 MB.
+// a part in the middle is deflated first. Memory: two more images, and 1 MB.
 std::string smaller_png(std::string bytes);
 
 }  // namespace rlpc

@@ -21,7 +21,8 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
   no_textures->group(group);
   app.add_flag_callback(
          "--exact-images", [&images] { images = Images::kExact; },
-         "Store the files of images (default: PNG images are deflated again where that saves "
+         "Keep image files as they are (default: PNG images are deflated again where that "
+         "saves "
          "bytes; their pixels stay)")
       ->excludes(no_textures)
       ->group(group);
