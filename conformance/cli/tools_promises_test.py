@@ -131,6 +131,22 @@ class Promises(ToolsTest):
             self.assertGreater(max(error / kg, normals), 0.98)
         self.assertEqual(nearest, [False, True])
 
+    def test_the_stream_does_not_depend_on_the_threads(self):
+        streams = set()
+        for threads in (1, 3):
+            self.ok("rlpcenc", INPUTS / "curtain.obj", "--points", INPUTS / "curtain.pc2",
+                    "--normals", 2, "--profile", "high", "--threads", threads, "-o",
+                    self.path("a.rlpc"))
+            streams.add(self.path("a.rlpc").read_bytes())
+        self.assertEqual(len(streams), 1)
+
+    def test_what_has_no_normals_cannot_be_bounded_by_them(self):
+        line = self.path("line.obj")
+        write_obj(line, [0, 0, 0, 1, 0, 0, 2, 0, 0], [(0, 1, 2)])
+        self.fails(1, "no normals to bound with --normals", "rlpcenc", line, "--normals", 1, "-o",
+                   self.path("b.rlpc"))
+        self.ok("rlpcenc", line, "--normals", 1, "--kg", 0.1, "-o", self.path("b.rlpc"))
+
     def test_what_bounds_normals_cannot_be_combined_with(self):
         for options in (("--bpvf", 2), ("--max-error", 1), ("--lossless",),
                         ("--quality", "good"), ("--profile", "high", "--low-delay")):

@@ -67,9 +67,12 @@ MemoryNeed memory_need(const EncoderSettings& settings, const SequenceHeader& he
       has_rigs ? header.num_vertices * (kRigBytes + kFactorsOfRig * span_frames) : 0;
   // Each thread has a span of its own, or a candidate for one, encoded by all kinds of GOFs;
   // another rig is in force.
+  // Normals and areas of the original and the decoded vertex.
+  constexpr std::uint64_t kNormalBytes = 64;  // fixed: memory
+  const std::uint64_t normal_bytes = settings.target.max_normals > 0.0 ? kNormalBytes : 0;
   const std::uint64_t thread_bytes =
-      header.num_vertices *
-          (kBytesOfPosition * span_frames + bytes_of_frames(settings, header, span_frames)) +
+      header.num_vertices * (kBytesOfPosition * span_frames + normal_bytes +
+                             bytes_of_frames(settings, header, span_frames)) +
       rig_bytes;
   const std::uint64_t vertex_bytes =
       kVertexBytes + kKept * kept_frames + source.bytes_of_position * span_frames;

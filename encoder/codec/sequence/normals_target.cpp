@@ -71,9 +71,9 @@ double rms_spread(const Frames& frames) {
   return std::sqrt(sum / static_cast<double>(frames.xyz.size()));
 }
 
-// Returns the RMS deviation of vertex normals, in degrees, under noise of an RMS error of a
-// coordinate.
-double deviation(const Frames& frames, std::span<const Triangle> triangles, double rms_error) {
+// Returns the deviation of vertex normals under noise of an RMS error of a coordinate.
+SquaredAngles deviation(const Frames& frames, std::span<const Triangle> triangles,
+                        double rms_error) {
   Noise noise;
   SquaredAngles angles;
   std::vector<float> noisy(frames.values);
@@ -84,7 +84,7 @@ double deviation(const Frames& frames, std::span<const Triangle> triangles, doub
     }
     angles += normal_deviation(triangles, xyz, noisy);
   }
-  return angles.rms();
+  return angles;
 }
 
 }  // namespace
@@ -96,8 +96,17 @@ InputResult<double> expected_kg(FrameSource& source, std::span<const Triangle> t
   const auto frames = read_some(source);
   if (!frames) return frames.error();
   const double spread = rms_spread(*frames);
+  const bool has_normals = deviation(*frames, triangles, 0.0).weight > 0.0;
+  if (!has_normals && target.value >= kAnyKg) {
+    return InputError{
+        "there are no normals to bound with 'max_normals', as no triangle has an area: leave "
+        "it "
+        "out"};
+  }
+  if (!has_normals) return target.value;
   const auto keeps = [&](double part) {
-    return deviation(*frames, triangles, part / kSmoother * spread) <= target.max_normals;
+    const double rms_error = part / kSmoother * spread;
+    return deviation(*frames, triangles, rms_error).rms() <= target.max_normals;
   };
   if (keeps(target.value / 100.0)) return target.value;
   // The deviation rises with the noise.

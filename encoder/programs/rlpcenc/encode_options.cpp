@@ -112,7 +112,6 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
     if (o.quality == q.word) s.target = {Target::kKg, q.kg_error_percent};
   }
   if (line.kg) s.target = {Target::kKg, *line.kg};
-  constexpr double kAnyKg = 100.0;
   if (line.normals) s.target = {Target::kKg, line.kg.value_or(kAnyKg), *line.normals};
   if (line.bpvf) s.target = {Target::kBpvf, *line.bpvf};
   if (line.max_error) s.target = {Target::kMaxError, *line.max_error};

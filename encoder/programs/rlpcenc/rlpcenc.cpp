@@ -179,6 +179,9 @@ std::string reachable_target(const Target& target, const EncodeReport& report) {
     case Target::kMaxError:
       return "--max-error " + a_little_above(report.metrics.max_error);
     default:
+      if (report.metrics.vertex_normals.value_or(0.0) > target.max_normals) {
+        return "--normals " + a_little_above(*report.metrics.vertex_normals);
+      }
       return "--kg " + a_little_above(report.metrics.kg_error_percent);
   }
 }
@@ -237,6 +240,7 @@ std::string finer(const EncodeOptions& o, const EncodeReport& report, const Visi
   }
   if (target.kind == Target::kLossless) return "more bits";
   if (target.kind == Target::kBpvf) return "a higher --bpvf";
+  if (target.max_normals > 0.0) return "a smaller --normals";
   const double value = target.value * Visibility::kVisiblePercent / v.error_percent;
   const NamedQuality* const named =
       std::find_if(kQualities.begin(), kQualities.end(),
