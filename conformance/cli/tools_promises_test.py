@@ -101,12 +101,12 @@ class Promises(ToolsTest):
 
     def test_normals_deviate_at_most_as_asked(self):
         for name in NAMES:
-            for profile, degrees in (("main", 0.5), ("high", 3)):
+            for profile, degrees, others in (("main", 0.5, ()), ("high", 3, ("--kg", 10))):
                 with self.subTest(name=name, profile=profile):
                     result = self.ok("rlpcenc", INPUTS / f"{name}.obj", "--points",
                                      INPUTS / f"{name}.pc2", "--normals", degrees,
                                      "-o", self.path("a.rlpc"), "--keep-order", "--json",
-                                     "--profile", profile, "--preset", "fast")
+                                     "--profile", profile, "--preset", "fast", *others)
                     self.assertNotIn("smaller than requested", result.err)
                     report = result.json()
                     self.assertTrue(report["target_met"])
@@ -140,12 +140,21 @@ class Promises(ToolsTest):
             streams.add(self.path("a.rlpc").read_bytes())
         self.assertEqual(len(streams), 1)
 
-    def test_what_has_no_normals_cannot_be_bounded_by_them(self):
-        line = self.path("line.obj")
-        write_obj(line, [0, 0, 0, 1, 0, 0, 2, 0, 0], [(0, 1, 2)])
-        self.fails(1, "no normals to bound with --normals", "rlpcenc", line, "--normals", 1, "-o",
-                   self.path("b.rlpc"))
-        self.ok("rlpcenc", line, "--normals", 1, "--kg", 0.1, "-o", self.path("b.rlpc"))
+    def test_normals_alone_do_not_lose_the_motion(self):
+        """A square that slides within its plane, a line, and points: any error leaves normals as
+        they are."""
+        square = [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0]
+        line = [0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0]
+        for shape, triangles in ((square, [(0, 1, 2), (0, 2, 3)]), (line, [(0, 1, 2)])):
+            frames = [[x + 0.37 * f * (i % 3 == 0) for i, x in enumerate(shape)]
+                      for f in range(20)]
+            write_obj(self.path("a.obj"), frames[0], triangles)
+            write_pc2(self.path("a.pc2"), frames)
+            for profile in ("main", "high"):
+                self.ok("rlpcenc", self.path("a.obj"), "--points", self.path("a.pc2"),
+                        "--normals", 1, "--profile", profile, "-o", self.path("a.rlpc"))
+                self.ok("rlpccmp", self.path("a.obj"), "--points", self.path("a.pc2"),
+                        self.path("a.rlpc"), "--max-kg", 1)
 
     def test_what_bounds_normals_cannot_be_combined_with(self):
         for options in (("--bpvf", 2), ("--max-error", 1), ("--lossless",),

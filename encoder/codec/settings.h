@@ -124,9 +124,6 @@ struct InterTools {
 // Hashes of decoded positions in the stream: none, one per GOF, one per frame.
 enum class HashMode : std::uint8_t { kNone, kGof, kFrame };
 
-// A KG error that nothing of the shape would be left at, per cent.
-inline constexpr double kAnyKg = 100.0;  // fixed: that of a mesh shrunk to its centre
-
 // Error or rate that the encoder aims for. If possible, the result is at most 0.6 % below it,
 // or 2 % if it is the largest error. It exceeds the target only if that cannot be met
 // (EncodeReport::target_met).
@@ -145,8 +142,8 @@ struct Target {
   Kind kind = kKg;
   double value = 0.1;  // above zero and finite, except for kNone and kLossless
   // kKg: a second bound, of the RMS deviation of vertex normals (vertex_normals.h), in degrees;
-  // 0: none. The result comes near one of the bounds. With a value of kAnyKg, this is the only
-  // one.
+  // 0: none. The result comes near one of the bounds. Normals alone would not do: they do not
+  // change where a part moves as a whole, or within its plane.
   double max_normals = 0.0;
   // kKg with max_normals: KG error at which the bounds are expected to be met, which encode()
   // sets; 0: not known.

@@ -96,14 +96,6 @@ InputResult<double> expected_kg(FrameSource& source, std::span<const Triangle> t
   const auto frames = read_some(source);
   if (!frames) return frames.error();
   const double spread = rms_spread(*frames);
-  const bool has_normals = deviation(*frames, triangles, 0.0).weight > 0.0;
-  if (!has_normals && target.value >= kAnyKg) {
-    return InputError{
-        "there are no normals to bound with 'max_normals', as no triangle has an area: leave "
-        "it "
-        "out"};
-  }
-  if (!has_normals) return target.value;
   const auto keeps = [&](double part) {
     const double rms_error = part / kSmoother * spread;
     return deviation(*frames, triangles, rms_error).rms() <= target.max_normals;

@@ -12,8 +12,7 @@ namespace rlpc {
 
 // Returns the KG error at which an encoding is expected to meet both bounds of a target with
 // max_normals, above zero: noise is added to some frames until their vertex normals deviate as
-// much as they may. The search goes on from what encodings show. Errors: errors of the source;
-// nothing is bounded, since these frames have no normals and a KG error of kAnyKg is allowed.
+// much as they may. The search goes on from what encodings show. Errors: errors of the source.
 InputResult<double> expected_kg(FrameSource& source, std::span<const Triangle> triangles,
                                 const Target& target);
 

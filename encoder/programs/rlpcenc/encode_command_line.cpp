@@ -81,7 +81,8 @@ length, which is a mean normal deviation of about one degree.
 --normals bounds what smooth shading shows: the angle between the original and
 the decoded normal of a vertex, which is the sum of the normals of its
 triangles, weighted by area. RMS over vertices and frames, weighted by area.
-With --kg, both are bounds, and the result comes near one of them.
+The KG error is bounded as well, by 1 % unless --kg says otherwise: normals do
+not tell where a part is. The result comes near one of the bounds.
 
 --lossless restores every coordinate as a 32-bit float (-0 as 0), exactly or as
 the float nearest to the number in INPUT: rlpcenc reports the largest distance.
@@ -208,7 +209,7 @@ void add_quality_options(CLI::App& app, EncodeCommandLine& line) {
                    ->group(kQuality);
   auto* kg = app.add_option("--kg", line.kg, "KG error in per cent")->option_text("PERCENT");
   auto* normals =
-      app.add_option("--normals", line.normals, "RMS deviation of normals (also with --kg)");
+      app.add_option("--normals", line.normals, "RMS deviation of normals, beside --kg 1");
   normals->option_text("DEGREES")->check(kAboveZero)->group(kQuality);
   auto* bpvf = app.add_option("--bpvf", line.bpvf, "Bits per vertex and frame");
   auto* max_error =

@@ -112,7 +112,9 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
     if (o.quality == q.word) s.target = {Target::kKg, q.kg_error_percent};
   }
   if (line.kg) s.target = {Target::kKg, *line.kg};
-  if (line.normals) s.target = {Target::kKg, line.kg.value_or(kAnyKg), *line.normals};
+  if (line.normals)
+    s.target = {Target::kKg, line.kg.value_or(kQualities.front().kg_error_percent),
+                *line.normals};
   if (line.bpvf) s.target = {Target::kBpvf, *line.bpvf};
   if (line.max_error) s.target = {Target::kMaxError, *line.max_error};
   if (line.lossless) s.target = {Target::kLossless, static_cast<double>(*line.lossless)};
