@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""clang-tidy 14 accepts all C++ sources that the preset `sanitize` compiles.
+"""clang-tidy 14 accepts all C++ sources that the preset `tidy` compiles.
 
 A verdict is kept in build/check/tidy under a digest of everything in the repository that it
 depends on: the source, the headers that it includes, its compile command, .clang-tidy. Sources
@@ -98,7 +98,7 @@ def check(root):
     tool = shutil.which(TOOL)
     if tool is None:
         return [f"{TOOL} is not installed"], ""
-    build = root / "build" / "sanitize"
+    build = root / "build" / "tidy"
     kept = root / "build" / "check" / "tidy"
     kept.mkdir(parents=True, exist_ok=True)
     version = subprocess.run([tool, "--version"], capture_output=True, text=True,

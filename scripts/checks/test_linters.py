@@ -61,7 +61,7 @@ class Tidy(unittest.TestCase):
         path.write_text(text, encoding="utf-8")
 
     def compiled(self, *names):
-        self.write("build/sanitize/compile_commands.json", json.dumps([
+        self.write("build/tidy/compile_commands.json", json.dumps([
             {"directory": str(self.root), "file": str(self.root / name),
              "command": f"clang++ -I{self.root} -c {self.root / name}"} for name in names]))
 
