@@ -111,6 +111,7 @@ class FrameSource {
   void set_axes_of_mesh(const std::optional<Axes>& axes) { shape_.axes_of_mesh = axes; }
   void drop_later_normals() { shape_.attributes.later_normals.clear(); }
   void add_note(std::string note) { shape_.notes.push_back(std::move(note)); }
+  void set_note(std::size_t index, std::string note) { shape_.notes[index] = std::move(note); }
 
  private:
   Shape shape_;

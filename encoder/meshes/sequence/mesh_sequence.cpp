@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <set>
+#include <map>
 #include <span>
 #include <system_error>
 #include <utility>
@@ -153,10 +153,11 @@ class MeshSequence : public FrameSource {
       // Normals move with the frames: normals of the stream are compared (add_later_normals).
       if (first != nullptr && set.name == kNormalName) continue;
       if (first != nullptr && are_near(*first, set, triangles())) continue;
-      note_once(frame, set.name,
-                first == nullptr ? " is dropped, as " + files_.path(0) + " has none"
-                                 : " differs from that of " + files_.path(0) +
-                                       ", which is kept for all frames");
+      note_first(frame, set.name,
+                 files_.path(frame) + ": " + set.name +
+                     (first == nullptr ? " is dropped, as " + files_.path(0) + " has none"
+                                       : " differs from that of " + files_.path(0) +
+                                             ", which is kept for all frames"));
     }
     compare_materials(frame, mesh);
     for (const std::string& note : mesh.notes) compare_note(frame, note);
@@ -188,22 +189,33 @@ class MeshSequence : public FrameSource {
     const std::string kind = note.substr(0, note.find_first_of("(0123456789"));
     const auto is_known = [&](const std::string& known) { return known.starts_with(kind); };
     if (std::any_of(notes().begin(), notes().end(), is_known)) return;
-    if (noted_.insert(kind).second) add_note(files_.path(frame) + ": " + note);
+    note_first(frame, kind, files_.path(frame) + ": " + note);
   }
 
   void note_others(std::uint32_t frame, const std::string& what) {
-    note_once(frame, what,
-              " are dropped; those of " + files_.path(0) + " are kept for all frames");
+    note_first(frame, what,
+               files_.path(frame) + ": " + what + " are dropped; those of " + files_.path(0) +
+                   " are kept for all frames");
   }
 
-  void note_once(std::uint32_t frame, const std::string& what, const std::string& fate) {
-    if (!noted_.insert(what).second) return;
-    add_note(files_.path(frame) + ": " + what + fate);
+  // Notes a kind of difference once, for the first of the frames that have it, in whatever
+  // order they are read.
+  void note_first(std::uint32_t frame, const std::string& kind, std::string note) {
+    const auto [found, is_new] = noted_.try_emplace(kind, Noted{frame, notes().size()});
+    Noted& noted = found->second;
+    if (is_new) return add_note(std::move(note));
+    if (frame >= noted.frame) return;
+    noted.frame = frame;
+    set_note(noted.index, std::move(note));
   }
 
+  struct Noted {
+    std::uint32_t frame = 0;
+    std::size_t index = 0;  // in notes()
+  };
   SequenceFiles files_;
   std::vector<bool> has_compared_attributes_;  // [frame]
-  std::set<std::string> noted_;                // sets, materials and notes of later files
+  std::map<std::string, Noted> noted_;         // sets, materials and notes of later files
 };
 
 }  // namespace

@@ -21,11 +21,13 @@ using Face = std::vector<std::uint32_t>;
 class MeshSequenceFilesTest : public ScratchFolderTest {
  protected:
   // Returns the error of opening or of the first bad frame, or the notes, a line each.
-  static std::string result_of(const InputOptions& options) {
+  static std::string result_of(const InputOptions& options, bool reads_backwards = false) {
     const auto source = open_frame_source(options);
     if (!source) return source.error().message;
     std::vector<float> xyz(3 * std::size_t{(*source)->num_vertices()});
-    for (std::uint32_t f = 0; f < (*source)->num_frames(); ++f) {
+    const std::uint32_t count = (*source)->num_frames();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t f = reads_backwards ? count - 1 - i : i;
       if (const auto error = (*source)->read_frame(f, xyz)) return error->message;
     }
     std::string text;
@@ -199,6 +201,22 @@ TEST_F(MeshSequenceFilesTest, NameNormalsThatTheFirstFrameHasNot) {
   put("f1.obj", points + "f 1 2 3\n");
   put("f2.obj", points + "vn 0 0 1\nf 1//1 2//1 3//1\n");
   EXPECT_NE(result().find("f2.obj: normal is dropped"), std::string::npos) << result();
+}
+
+// Encoders read frames in any order.
+TEST_F(MeshSequenceFilesTest, NameTheFirstFileThatDiffers) {
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  put("f1.obj", points + "f 1 2 3\n");
+  put("f2.obj", points + "vn 0 0 1\nf 1//1 2//1 3//1\n");
+  put("f3.obj", points + "vt 0 1\nvn 0 0 1\nusemtl red\nf 1/1/1 2/1/1 3/1/1\n");
+  put("f4.obj", points + "vt 0 1\nusemtl blue\nf 1/1 2/1 3/1\n");
+  const std::string backwards = result_of({folder_.string(), "", {}}, true);
+  for (const std::string& text : {result(), backwards}) {
+    EXPECT_NE(text.find("f2.obj: normal is dropped"), std::string::npos) << text;
+    EXPECT_NE(text.find("f3.obj: uv0 is dropped"), std::string::npos) << text;
+    EXPECT_NE(text.find("f3.obj: names of materials are dropped"), std::string::npos) << text;
+    EXPECT_EQ(text.find("f4.obj"), std::string::npos) << text;
+  }
 }
 
 TEST_F(MeshSequenceFilesTest, AreSortedByNumberWhenGivenOneByOne) {
