@@ -6,6 +6,7 @@
 #include "common/files/messages.h"
 #include "encoder/codec/kinds/inter/pattern_search.h"
 #include "encoder/codec/sequence/choices/gof_kinds.h"
+#include "encoder/codec/spans/sample_size.h"
 
 namespace rlpc {
 
@@ -46,6 +47,22 @@ std::uint64_t bytes_of_frames(const EncoderSettings& settings, const SequenceHea
          choices * (kDecoded * num_frames + kFilterBytes * settings.inter.temporal_layers);
 }
 
+// Returns the bytes of what is fitted to a sample of the vertices. Solvers of bones are kept
+// for each number of bones and of influences, before and after rest positions were refined; a
+// rig that is recovered from the frames takes less. Measured with random motion.
+std::uint64_t bytes_of_bones(const EncoderSettings& settings, std::uint32_t num_vertices) {
+  constexpr std::uint64_t kSolverBytes = 750;  // fixed: memory; of a vertex
+  constexpr std::uint64_t kSumsBytes = 2400;   // fixed: memory; of a vertex and 36 bones
+  constexpr std::uint64_t kFewSolvers = 7;     // fixed: memory; preset fast
+  constexpr std::uint64_t kUsualSolvers = 17;  // fixed: memory; preset medium
+  constexpr std::uint64_t kManySolvers = 48;   // fixed: memory; preset slow
+  if (settings.profile == Profile::kBaseline || !settings.may_use(GofKind::kSkinned)) return 0;
+  const std::uint64_t solvers = settings.preset == Preset::kFast   ? kFewSolvers
+                                : settings.preset == Preset::kSlow ? kManySolvers
+                                                                   : kUsualSolvers;
+  return std::min(num_vertices, kSampleVertices) * (solvers * kSolverBytes + kSumsBytes);
+}
+
 struct MemoryNeed {
   std::uint64_t with_one_thread = 0;
   std::uint64_t thread_bytes = 0;  // bytes of each further thread
@@ -60,6 +77,10 @@ MemoryNeed memory_need(const EncoderSettings& settings, const SequenceHeader& he
   constexpr std::uint64_t kVertexBytes = 700;                // fixed: memory
   constexpr std::uint64_t kTriangleBytes = 250;              // fixed: memory
   constexpr std::uint64_t kKept = 70;                        // fixed: memory
+  // What each span keeps for the vertices: its choices, and the errors of a trial.
+  constexpr std::uint64_t kSpanBytes = 100;  // fixed: memory
+  const std::uint64_t num_spans =
+      std::max<std::uint64_t>(1, (source.encoded_frames + span_frames - 1) / span_frames);
   // The rest of a shared rig: rest position, influences, two sets of weights of prediction.
   constexpr std::uint64_t kRigBytes = 400;  // fixed: memory
   const bool has_rigs = settings.profile == Profile::kHigh && span_frames < header.num_frames;
@@ -73,9 +94,10 @@ MemoryNeed memory_need(const EncoderSettings& settings, const SequenceHeader& he
   const std::uint64_t thread_bytes =
       header.num_vertices * (kBytesOfPosition * span_frames + normal_bytes +
                              bytes_of_frames(settings, header, span_frames)) +
-      rig_bytes;
-  const std::uint64_t vertex_bytes =
-      kVertexBytes + kKept * kept_frames + source.bytes_of_position * span_frames;
+      bytes_of_bones(settings, header.num_vertices) + rig_bytes;
+  const std::uint64_t vertex_bytes = kVertexBytes + kSpanBytes * num_spans +
+                                     kKept * kept_frames +
+                                     source.bytes_of_position * span_frames;
   const std::uint64_t shared = kFixed + source.bytes + header.num_vertices * vertex_bytes +
                                header.num_triangles * kTriangleBytes + rig_bytes;
   return {shared + thread_bytes, thread_bytes};

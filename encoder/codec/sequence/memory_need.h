@@ -26,10 +26,12 @@ std::uint32_t longest_gof(const EncoderSettings& settings, std::uint32_t num_ver
 // Returns the same for a sequence of which all frames are known: if it is more than
 // longest_gof(), choose_longest_gof() decides.
 std::uint32_t longest_gof_of_all(const EncoderSettings& settings, std::uint32_t num_vertices);
-// Memory that the source of an encoding holds.
+// Memory that the source of an encoding holds, and frames that are encoded before any is
+// written.
 struct SourceMemory {
   std::uint64_t bytes = 0;
   std::uint64_t bytes_of_position = 0;  // for each vertex and frame of the longest span
+  std::uint32_t encoded_frames = 0;     // 0: those of a span
 };
 
 // Returns the maximum number of frames per span: in the High profile, the GOFs that can use one

@@ -115,9 +115,12 @@ InputResult<GridChoice> SequenceEncoder::first_grid() const {
 }
 
 SourceMemory SequenceEncoder::source_memory() const {
-  if (!source_.rig()) return {source_.memory_bytes()};
-  const std::uint64_t n = source_.num_vertices();
-  return {source_.memory_bytes(), (pose_bytes(source_.rig()->bones.size()) + n - 1) / n};
+  SourceMemory memory{.bytes = source_.memory_bytes(), .encoded_frames = source_.num_frames()};
+  if (source_.rig()) {
+    const std::uint64_t n = source_.num_vertices();
+    memory.bytes_of_position = (pose_bytes(source_.rig()->bones.size()) + n - 1) / n;
+  }
+  return memory;
 }
 
 std::uint32_t SequenceEncoder::longest_span_of(const SequenceHeader& header) const {
