@@ -35,8 +35,8 @@ class Rigs(ToolsTest):
                            + b"".join(struct.pack("<9f", *frame) for frame in frames))
         for profile, num_gofs in (("main", 3), ("high", 2)):
             stream = self.path(profile + ".rlpc")
-            self.ok("rlpcenc", mesh, "--points", points, "--preset", "fast", "--profile",
-                    profile, "-o", stream)
+            self.ok("rlpcenc", mesh, "--points", points, "--preset", "fast", "--kg", 0.1,
+                    "--profile", profile, "-o", stream)
             info = self.ok("rlpcinfo", stream, "--json").json()
             self.assertEqual(info["num_gofs"], num_gofs, profile)
 

@@ -71,10 +71,10 @@ class Targets(ToolsTest):
     def test_quality_in_words(self):
         for name in NAMES:
             streams = {}
-            for word, kg in (("preview", 1), ("good", 0.1), ("fine", 0.03),
-                             ("visually-lossless", 0.01)):
+            for word, kg, normals in (("preview", 1, 4), ("good", 0.2, 0.8), ("fine", 0.06, 0.25),
+                                      ("visually-lossless", 0.02, 0.08)):
                 self.encode(self.path("word.rlpc"), "--quality", word, name=name)
-                self.encode_once(self.path("kg.rlpc"), "--kg", kg, name=name)
+                self.encode(self.path("kg.rlpc"), "--kg", kg, "--normals", normals, name=name)
                 streams[word] = self.path("word.rlpc").read_bytes()
                 self.assertEqual(streams[word], self.path("kg.rlpc").read_bytes(), word)
             self.encode(self.path("none.rlpc"), name=name)

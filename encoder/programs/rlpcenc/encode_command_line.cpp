@@ -66,23 +66,24 @@ and JPEG images of .mtl files (map_Kd, map_Ke, norm) are kept if they are in the
 folder of the mesh or below. Vertices are not split at seams.
 
 Qualities
-  word               KG error   mean normal deviation
-  preview            1 %        2 to 9 degrees: dents are visible
-  good (default)     0.1 %      0.2 to 1.3 degrees: barely visible
-  fine               0.03 %     below 0.4 degrees
-  visually-lossless  0.01 %     below 0.13 degrees: half a step of an 8-bit
-                                display
+  word               KG error  normals
+  preview            1 %       4 degrees     dents are visible
+  good (default)     0.2 %     0.8 degrees   no ripples in close-ups
+  fine               0.06 %    0.25 degrees  one step of an 8-bit display
+  visually-lossless  0.02 %    0.08 degrees  less than half a step
+Both are bounds, and the result comes near one of them. --low-delay bounds half
+the KG error alone.
 
 The KG error (Karni and Gotsman) is the RMS distance between original and
 decoded vertices, divided by the RMS distance of the vertices from the centre of
-their frame. rlpcenc warns if the RMS error exceeds 3 % of the median edge
-length, which is a mean normal deviation of about one degree.
+their frame. Normals are what smooth shading shows: the angle between the
+original and the decoded normal of a vertex, which is the sum of the normals of
+its triangles, weighted by area; RMS over vertices and frames, weighted by area.
+--normals bounds them, and the KG error by 1 % unless --kg says otherwise:
+normals do not tell where a part is.
 
---normals bounds what smooth shading shows: the angle between the original and
-the decoded normal of a vertex, which is the sum of the normals of its
-triangles, weighted by area. RMS over vertices and frames, weighted by area.
-The KG error is bounded as well, by 1 % unless --kg says otherwise: normals do
-not tell where a part is. The result comes near one of the bounds.
+Where no normals are bounded, rlpcenc warns if the RMS error exceeds 3 % of the
+median edge length, which is a mean normal deviation of about one degree.
 
 --lossless restores every coordinate as a 32-bit float (-0 as 0), exactly or as
 the float nearest to the number in INPUT: rlpcenc reports the largest distance.

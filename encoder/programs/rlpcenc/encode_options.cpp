@@ -108,13 +108,15 @@ std::optional<std::string> finish_settings(const EncodeCommandLine& line) {
   } else if (line.partition) {
     s.baseline.partition = *line.partition;
   }
+  s.target = kDefaultQuality.target(s.low_delay);
   for (const NamedQuality& q : kQualities) {
-    if (o.quality == q.word) s.target = {Target::kKg, q.kg_error_percent};
+    if (o.quality == q.word) s.target = q.target(s.low_delay);
   }
   if (line.kg) s.target = {Target::kKg, *line.kg};
-  if (line.normals)
-    s.target = {Target::kKg, line.kg.value_or(kQualities.front().kg_error_percent),
-                *line.normals};
+  if (line.normals) {
+    const double kg = line.kg.value_or(kQualities.front().kg_error_percent);
+    s.target = {Target::kKg, kg, *line.normals};
+  }
   if (line.bpvf) s.target = {Target::kBpvf, *line.bpvf};
   if (line.max_error) s.target = {Target::kMaxError, *line.max_error};
   if (line.lossless) s.target = {Target::kLossless, static_cast<double>(*line.lossless)};

@@ -226,8 +226,7 @@ int report_target(const EncodeOptions& o, const EncodeReport& report) {
       kTargetMissed);
 }
 
-// Suggests a target whose error should not be visible. RMS errors are roughly proportional to
-// KG errors.
+// Suggests a target whose error should not be visible.
 std::string finer(const EncodeOptions& o, const EncodeReport& report, const Visibility& v) {
   const Target& target = o.settings.target;
   if (target.kind == Target::kNone) {
@@ -240,23 +239,19 @@ std::string finer(const EncodeOptions& o, const EncodeReport& report, const Visi
   }
   if (target.kind == Target::kLossless) return "more bits";
   if (target.kind == Target::kBpvf) return "a higher --bpvf";
-  if (target.max_normals > 0.0) return "a smaller --normals";
+  if (target.kind == Target::kKg) return std::string("--quality ") + kDefaultQuality.word;
+  // RMS errors are roughly proportional to the largest ones.
   const double value = target.value * Visibility::kVisiblePercent / v.error_percent;
-  const NamedQuality* const named =
-      std::find_if(kQualities.begin(), kQualities.end(),
-                   [&](const NamedQuality& q) { return q.kg_error_percent <= value; });
-  if (target.kind == Target::kKg && named != kQualities.end()) {
-    return std::string("--quality ") + named->word;
-  }
   char text[32];
   std::snprintf(text, sizeof text, "%.1g", 0.9 * value);
-  return (target.kind == Target::kKg ? "--kg " : "--max-error ") + std::string(text);
+  return "--max-error " + std::string(text);
 }
 
-// Does not warn with --quality preview or if the target was missed: visible errors are expected
-// then.
+// Does not warn if normals are bounded, which says how visible errors are, or if they are
+// expected: in a preview, or where the target was missed.
 void warn_if_visible(const EncodeOptions& o, const EncodeReport& report, const Visibility& v) {
-  if (!v.visible() || o.quiet || o.quality == "preview" || !report.target_met) return;
+  if (!v.visible() || o.quiet || !report.target_met) return;
+  if (o.settings.target.max_normals > 0.0 || o.quality == kQualities.front().word) return;
   std::fprintf(
       stderr,
       "rlpcenc: the error may be visible: RMS %.3g %% of the median edge length (above "

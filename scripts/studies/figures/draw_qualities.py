@@ -121,10 +121,10 @@ def picture(tools):
     panels = panel(0, draw_mesh(original, triangles, place), "original",
                    f"{raw / 1000:.0f} kB of floats, 96 bpvf")
     for index, (quality, ((vertices, faces), report)) in enumerate(zip(QUALITIES, results), 1):
-        error = report["metrics"]["kg_error_percent"]
+        normals = report["metrics"]["vertex_normal_rms_degrees"]
         panels += panel(index, draw_mesh(vertices, faces, place), f"--quality {quality}",
                         f"{report['bytes'] / 1000:.1f} kB, {report['bpvf']:.2f} bpvf, "
-                        f"KG {error:.2g} %")
+                        f"normals {normals:.2g}\u00b0")
     width, height = PANEL * (1 + len(QUALITIES)), HEIGHT + CAPTION
     return "\n".join([
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '

@@ -15,16 +15,17 @@ SAMPLES = 9  # frames that three.js draws, besides the one in the middle
 HERE = pathlib.Path(__file__).resolve().parent
 PACKED = "gltfpack"
 # {kg}: the KG error of gltfpack's file.
-SETTINGS = {"default": (), "high": ("--profile", "high"), "all": ("--gof", "all"),
+KG = ("--kg", "0.1")
+SETTINGS = {"default": KG, "high": (*KG, "--profile", "high"), "all": (*KG, "--gof", "all"),
             "equal": ("--kg", "{kg:.6g}"), "equal-high": ("--profile", "high", "--kg", "{kg:.6g}")}
 TITLES = {"default": "RLPC", "high": "High", "all": "--gof all", "equal": "RLPC, equal KG",
           "equal-high": "High, equal KG"}
 
 DEFINITIONS = (
     "kB: 1000 bytes, of whole files: all clips, attributes, materials and images. gltfpack: "
-    "`gltfpack -cz`, then brotli -q 11. RLPC: `rlpcenc --animation all --fps 30`; High: with "
-    "--profile high, which is in preparation; equal KG: with --kg and the error of gltfpack's "
-    "file.",
+    "`gltfpack -cz`, then brotli -q 11. RLPC: `rlpcenc --animation all --fps 30 --kg 0.1`; "
+    "High: with --profile high, which is in preparation; equal KG: with --kg and the error of "
+    "gltfpack's file.",
     "KG error: 100 * ||B - B'|| / ||B - E(B)||, B the positions of all vertices in all frames at "
     "30 frames a second, E(B) the mean vertex of each frame, by rlpccmp. gltfpack reorders and "
     "merges vertices: each vertex of the source is compared with that of gltfpack's file whose "

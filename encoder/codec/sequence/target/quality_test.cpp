@@ -56,6 +56,16 @@ TEST(Quality, IsUnknownWithoutEdges) {
 TEST(Quality, WordsGoFromCoarseToFine) {
   for (std::size_t i = 1; i < kQualities.size(); ++i) {
     EXPECT_LT(kQualities[i].kg_error_percent, kQualities[i - 1].kg_error_percent);
+    EXPECT_LT(kQualities[i].max_normals, kQualities[i - 1].max_normals);
+  }
+}
+
+TEST(Quality, BoundsNormalsButNotInLowDelayMode) {
+  for (const NamedQuality& q : kQualities) {
+    EXPECT_EQ(q.target(false).value, q.kg_error_percent);
+    EXPECT_EQ(q.target(false).max_normals, q.max_normals);
+    EXPECT_EQ(q.target(true).value, q.kg_error_percent / 2);
+    EXPECT_EQ(q.target(true).max_normals, 0.0);
   }
 }
 
