@@ -164,8 +164,8 @@ typedef struct rlpc_encode_options {
   const rlpc_clip* clips;
   size_t num_clips;  // since 1.2
   // With RLPC_TARGET_KG, a second bound: of the RMS deviation of vertex normals, in degrees; 0:
-  // none. Normals do not tell where a part is, so choose a target_value that does, such as 1.
-  // Not with low_delay. Since 1.2.
+  // none. Normals do not tell where a part is, so choose a target_value that does, such as 1;
+  // 0.8 with a target_value of 0.2 is `rlpcenc --quality good`. Not with low_delay. Since 1.2.
   double max_normals;
 } rlpc_encode_options;
 
