@@ -269,7 +269,7 @@ class WorstCases(MeasuredTest):
         """Frames without anything in common take most: the largest basis, every kind of GOF. In
         short GOFs, what is fitted to vertices takes more than what is kept of frames."""
         self.noise("long", 50, 50)
-        self.noise("short", 50, 8)
+        self.noise("short", 50, 4)
         cases = [("long", profile, ()) for profile in ("baseline", "main", "high")]
         cases += [("short", profile, ("--gof", 2)) for profile in ("main", "high")]
         if os.environ.get("RLPC_LONG"):

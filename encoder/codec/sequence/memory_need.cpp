@@ -86,11 +86,11 @@ MemoryNeed memory_need(const EncoderSettings& settings, const SequenceHeader& he
   const bool has_rigs = settings.profile == Profile::kHigh && span_frames < header.num_frames;
   const std::uint64_t rig_bytes =
       has_rigs ? header.num_vertices * (kRigBytes + kFactorsOfRig * span_frames) : 0;
-  // Each thread has a span of its own, or a candidate for one, encoded by all kinds of GOFs;
-  // another rig is in force.
   // Normals and areas of the original and the decoded vertex.
   constexpr std::uint64_t kNormalBytes = 64;  // fixed: memory
   const std::uint64_t normal_bytes = settings.target.max_normals > 0.0 ? kNormalBytes : 0;
+  // Each thread has a span of its own, or a candidate for one, encoded by all kinds of GOFs;
+  // another rig is in force.
   const std::uint64_t thread_bytes =
       header.num_vertices * (kBytesOfPosition * span_frames + normal_bytes +
                              bytes_of_frames(settings, header, span_frames)) +
