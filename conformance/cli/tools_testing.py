@@ -170,6 +170,16 @@ class ToolsTest(unittest.TestCase):
     def path(self, name):
         return self.folder / name
 
+    def expect_same_metrics(self, report, compared):
+        """rlpcenc reports what rlpccmp measures; normals, where any triangle has an area."""
+        metrics = dict(report["metrics"])
+        normals = metrics.pop("vertex_normal_rms_degrees", None)
+        self.assertEqual(compared["metrics"], metrics)
+        if normals is not None:
+            surface = compared.get("surface", {})
+            self.assertAlmostEqual(normals, surface.get("vertex_normal_rms_degrees") or 0,
+                                   delta=1e-9)
+
     def ok(self, tool, *args, **options):
         result = run(tool, *args, **options)
         self.assertEqual(result.code, 0, f"{tool} {args}: {result.err}")

@@ -339,9 +339,11 @@ std::optional<InputError> SequenceEncoder::verify(const std::shared_ptr<StreamBu
                                                   EncodeReport& report) {
   StreamVerifier verifier(settings_, coding_->header(), coding_->connectivity().input_vertex,
                           stream, num_threads_);
-  verifier.measure_normals(coding_->normal_triangles());
+  verifier.measure_normals(source_.triangles());
   if (auto error = verifier.check_frames(source_, 0, source_.num_frames())) return error;
   if (auto error = verifier.finish(report.metrics)) return error;
+  // The search measures normals only if they are bounded.
+  report.metrics.vertex_normals = verifier.vertex_normals();
   report.largest_rounding = verifier.largest_rounding();
   return check_rules(settings_, attributes_->has_sets(), stream, end_of_first_gof);
 }

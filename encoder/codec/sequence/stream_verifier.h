@@ -52,6 +52,9 @@ class StreamVerifier {
   // check_frame() has measured, if it was called.
   std::optional<InputError> finish(const Metrics& reported);
 
+  // Returns the RMS deviation of vertex normals that check_frame() has measured, in degrees;
+  // none if it was not asked to, or no triangle has an area.
+  std::optional<double> vertex_normals() const { return metrics_.result().vertex_normals; }
   // Returns the largest distance of an input vertex from the floats that were coded, in units.
   double largest_rounding() const { return largest_rounding_; }
 

@@ -155,8 +155,9 @@ void tell_if_far_below(const Target& target, const EncodeReport& report) {
   }
   const Metrics& m = report.metrics;
   const double error = target.kind == Target::kMaxError ? m.max_error : m.kg_error_percent;
-  const bool is_near = error >= kNear * target.value ||
-                       (m.vertex_normals && *m.vertex_normals >= kNear * target.max_normals);
+  const bool is_near_normals =
+      target.max_normals > 0.0 && m.vertex_normals.value_or(0.0) >= kNear * target.max_normals;
+  const bool is_near = error >= kNear * target.value || is_near_normals;
   if (target.kind != Target::kBpvf && !is_exact && !is_near) {
     complain(
         "the error is smaller than requested: no smaller file closer to the target was found");
@@ -179,7 +180,8 @@ std::string reachable_target(const Target& target, const EncodeReport& report) {
     case Target::kMaxError:
       return "--max-error " + a_little_above(report.metrics.max_error);
     default:
-      if (report.metrics.vertex_normals.value_or(0.0) > target.max_normals) {
+      if (target.max_normals > 0.0 &&
+          report.metrics.vertex_normals.value_or(0.0) > target.max_normals) {
         return "--normals " + a_little_above(*report.metrics.vertex_normals);
       }
       return "--kg " + a_little_above(report.metrics.kg_error_percent);
