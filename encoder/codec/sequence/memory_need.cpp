@@ -86,13 +86,13 @@ MemoryNeed memory_need(const EncoderSettings& settings, const SequenceHeader& he
   const bool has_rigs = settings.profile == Profile::kHigh && span_frames < header.num_frames;
   const std::uint64_t rig_bytes =
       has_rigs ? header.num_vertices * (kRigBytes + kFactorsOfRig * span_frames) : 0;
-  // Normals and areas of the original and the decoded vertex.
+  // Normals and areas of the original and the decoded vertex, which the verifier compares, and
+  // the search as well if they are bounded.
   constexpr std::uint64_t kNormalBytes = 64;  // fixed: memory
-  const std::uint64_t normal_bytes = settings.target.max_normals > 0.0 ? kNormalBytes : 0;
   // Each thread has a span of its own, or a candidate for one, encoded by all kinds of GOFs;
   // another rig is in force.
   const std::uint64_t thread_bytes =
-      header.num_vertices * (kBytesOfPosition * span_frames + normal_bytes +
+      header.num_vertices * (kBytesOfPosition * span_frames + kNormalBytes +
                              bytes_of_frames(settings, header, span_frames)) +
       bytes_of_bones(settings, header.num_vertices) + rig_bytes;
   const std::uint64_t vertex_bytes = kVertexBytes + kSpanBytes * num_spans +

@@ -69,7 +69,7 @@ Qualities
   word               KG error  normals
   preview            1 %       4 degrees     dents are visible
   good (default)     0.2 %     0.8 degrees   no ripples in close-ups
-  fine               0.06 %    0.25 degrees  one step of an 8-bit display
+  fine               0.06 %    0.25 degrees  about one step of an 8-bit display
   visually-lossless  0.02 %    0.08 degrees  less than half a step
 Both are bounds, and the result comes near one of them. --low-delay bounds half
 the KG error alone.
@@ -209,8 +209,8 @@ void add_quality_options(CLI::App& app, EncodeCommandLine& line) {
                    ->option_text("WORD")
                    ->group(kQuality);
   auto* kg = app.add_option("--kg", line.kg, "KG error in per cent")->option_text("PERCENT");
-  auto* normals =
-      app.add_option("--normals", line.normals, "RMS deviation of normals, beside --kg 1");
+  auto* normals = app.add_option("--normals", line.normals,
+                                 "RMS deviation of normals, with --kg 1 unless given");
   normals->option_text("DEGREES")->check(kAboveZero)->group(kQuality);
   auto* bpvf = app.add_option("--bpvf", line.bpvf, "Bits per vertex and frame");
   auto* max_error =

@@ -22,8 +22,7 @@ void add_attribute_options(CLI::App& app, EncodeCommandLine& line) {
   app.add_flag_callback(
          "--exact-images", [&images] { images = Images::kExact; },
          "Keep image files as they are (default: PNG images are deflated again where that "
-         "saves "
-         "bytes; their pixels stay)")
+         "saves bytes; their pixels stay)")
       ->excludes(no_textures)
       ->group(group);
   auto* const uv_bits =

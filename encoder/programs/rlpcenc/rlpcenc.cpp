@@ -241,12 +241,14 @@ std::string finer(const EncodeOptions& o, const EncodeReport& report, const Visi
   }
   if (target.kind == Target::kLossless) return "more bits";
   if (target.kind == Target::kBpvf) return "a higher --bpvf";
-  if (target.kind == Target::kKg) return std::string("--quality ") + kDefaultQuality.word;
-  // RMS errors are roughly proportional to the largest ones.
+  const bool is_kg = target.kind == Target::kKg;
+  // In low-delay mode, words do not bound normals.
+  if (is_kg && !o.settings.low_delay) return std::string("--quality ") + kDefaultQuality.word;
+  // RMS errors are roughly proportional to KG errors and to the largest ones.
   const double value = target.value * Visibility::kVisiblePercent / v.error_percent;
   char text[32];
   std::snprintf(text, sizeof text, "%.1g", 0.9 * value);
-  return "--max-error " + std::string(text);
+  return (is_kg ? "--kg " : "--max-error ") + std::string(text);
 }
 
 // Does not warn if normals are bounded, which says how visible errors are, or if they are

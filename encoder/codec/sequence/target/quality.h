@@ -13,13 +13,13 @@ namespace rlpc {
 
 // Named qualities bound what is seen: the RMS deviation of vertex normals, which changes smooth
 // shading, and the KG error, which moves silhouettes. Chosen by pictures of ten animations
-// (characters, cloth, faces of 290 to 46,434 vertices), shaded smoothly with highlights, beside
-// the originals:
+// (characters, animals, cloth and a robot of 290 to 46,434 vertices), shaded smoothly with
+// highlights, beside the originals:
 //   preview            dents are visible, the motion is right
-//   good               the least at which no close-up showed a ripple: 1.2 degrees did, on the
-//                      cheek of an animal; shading changes by 1.4 % of full brightness
-//   fine               0.4 %, one step of an 8-bit display, also on glossy surfaces
-//   visually-lossless  0.14 %, below half a step
+//   good               close-ups show no ripples, as they do at 1.2 degrees; shading
+//                      changes by 1.4 % of full brightness
+//   fine               0.4 %, about one step of an 8-bit display
+//   visually-lossless  0.14 %, less than half a step
 // A KG error of 0.2 % is about a millimetre on a standing person, or a pixel of an image 1,800
 // pixels tall.
 struct NamedQuality {
@@ -34,11 +34,13 @@ struct NamedQuality {
                      : Target{Target::kKg, kg_error_percent, max_normals};
   }
 };
-inline constexpr std::array<NamedQuality, 4> kQualities{// fixed: see above
-                                                        {{"preview", 1.0, 4.0},
-                                                         {"good", 0.2, 0.8},
-                                                         {"fine", 0.06, 0.25},
-                                                         {"visually-lossless", 0.02, 0.08}}};
+// fixed: From coarse to fine.
+inline constexpr std::array<NamedQuality, 4> kQualities{{
+    {"preview", 1.0, 4.0},
+    {"good", 0.2, 0.8},
+    {"fine", 0.06, 0.25},
+    {"visually-lossless", 0.02, 0.08},
+}};
 inline constexpr NamedQuality kDefaultQuality = kQualities[1];  // fixed: for most purposes
 
 // An error relative to edge length: an error of e at one end of an edge of length l rotates a
