@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
 """clang-tidy 14 accepts all C++ sources that the preset `tidy` compiles.
 
+The sources of a folder are read as the one source that includes them (RLPC_UNITY): nearly all of
+the time goes into headers, most of them those of libraries.
+
 A verdict is kept in build/check/tidy under a digest of everything in the repository that it
-depends on: the source, the headers that it includes, its compile command, .clang-tidy. Sources
-that were accepted before are not read again, and a check that was interrupted goes on.
+depends on: the source, what it includes, its compile command, .clang-tidy. Sources that were
+accepted before are not read again, and a check that was interrupted goes on.
 """
 
 import concurrent.futures
@@ -25,7 +28,8 @@ _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"([^"\n]+)"', re.MULTILINE)
 _NOISE = re.compile(r"^\d+ warnings? generated\.$|note: expanded from macro")
 
 # Widths of products of small constants do not matter in tests.
-_OF_TESTS = ["--checks=-bugprone-implicit-widening-of-multiplication-result"]
+_IN_TESTS = "-bugprone-implicit-widening-of-multiplication-result"
+_IN_UNITY = "-bugprone-suspicious-include"  # it includes sources
 
 
 @functools.lru_cache(maxsize=None)
@@ -56,8 +60,19 @@ def _folders(root, arguments):
             if folder == root or root in folder.parents]
 
 
+def _is_unity(source):
+    return source.suffix == ".cxx"
+
+
+def _contents(source):
+    """The sources that a compiled source consists of."""
+    return tuple(map(pathlib.Path, _includes(source))) if _is_unity(source) else (source,)
+
+
 def _options(source):
-    return _OF_TESTS if source.stem.endswith("_test") else []
+    less = [_IN_TESTS] if any(path.stem.endswith("_test") for path in _contents(source)) else []
+    less += [_IN_UNITY] if _is_unity(source) else []
+    return ["--checks=" + ",".join(less)] if less else []
 
 
 def key(root, source, command, version):
@@ -67,20 +82,32 @@ def key(root, source, command, version):
     for text in (version, settings, command.replace(str(root), ""), *_options(source)):
         digest.update(hashlib.sha256(text.encode()).digest())
     for path in dependencies(source, _folders(root, shlex.split(command))):
-        digest.update(hashlib.sha256(path.read_bytes()).digest())
+        text = path.read_bytes().replace(str(root).encode(), b"")
+        digest.update(hashlib.sha256(text).digest())
     return digest.hexdigest()
 
 
+def _is_in_layers(root, source):
+    return root in source.parents and source.relative_to(root).parts[0] in cpp_source.LAYERS
+
+
 def sources(root, build):
-    """The C++ sources of the layers in the list of compile commands, with their commands."""
+    """Of what the list of compile commands compiles, as little as contains every C++ source of the
+    layers, with its commands."""
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
-    commands = {}
-    for entry in entries:
+    compiled = {}
+    for entry in sorted(entries, key=lambda entry: entry["file"]):
         path = pathlib.Path(entry["file"])
-        if path.suffix == ".cpp" and root in path.parents and \
-                path.relative_to(root).parts[0] in cpp_source.LAYERS:
-            commands.setdefault(path, entry["command"])
-    return dict(sorted(commands.items()))
+        contents = _contents(path) if path.suffix in (".cpp", ".cxx") else ()
+        if contents and all(_is_in_layers(root, source) for source in contents):
+            compiled[path] = (contents, entry["command"])
+    chosen, read = {}, set()
+    for path in sorted(compiled, key=lambda path: (-len(compiled[path][0]), path)):
+        contents, command = compiled[path]
+        if not read.issuperset(contents):
+            chosen[path] = command
+            read.update(contents)
+    return chosen
 
 
 def findings(tool, build, source):
@@ -103,8 +130,8 @@ def check(root):
     kept.mkdir(parents=True, exist_ok=True)
     version = subprocess.run([tool, "--version"], capture_output=True, text=True,
                              check=True).stdout
-    keys = {source: key(root, source, command, version)
-            for source, command in sources(root, build).items()}
+    compiled = sources(root, build)
+    keys = {source: key(root, source, command, version) for source, command in compiled.items()}
     if not keys:
         return ["the preset compiles no source of the layers"], ""
     waiting = [source for source in keys if not (kept / keys[source]).is_file()]
@@ -114,7 +141,9 @@ def check(root):
                 lambda source: _verdict(tool, build, source, kept / keys[source]), waiting)):
             if text:
                 complaints.append(f"{source.relative_to(root)}:\n{text}")
-    return complaints, f"{len(keys)} sources are accepted, {len(waiting)} of them read now"
+    count = len({source for path in keys for source in _contents(path)})
+    return complaints, (f"{count} sources are accepted, read as {len(keys)}, "
+                        f"{len(waiting)} of them now")
 
 
 def _verdict(tool, build, source, kept):

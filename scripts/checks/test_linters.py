@@ -92,9 +92,30 @@ class Tidy(unittest.TestCase):
             self.assertEqual(names, ["a.cpp", "b.cpp"])
             self.assertEqual(len(complaints), 2)
 
+    def test_sources_are_read_once_within_the_one_that_includes_them(self):
+        whole = "".join(f'#include "{self.root}/common/{name}.cpp"\n' for name in "ab")
+        self.write("build/tidy/Unity/unity_common.cxx", whole)
+        self.write("common/c.cpp", "int h() { return 1; }\n")
+        self.compiled("common/a.cpp", "common/c.cpp", "build/tidy/Unity/unity_common.cxx")
+        self.assertEqual(self.read(), (["c.cpp", "unity_common.cxx"], []))
+        self.write("common/a.h", "#pragma once\nint f(int z);\n")
+        self.assertEqual(self.read(), (["unity_common.cxx"], []))
+
     def test_no_source_is_a_complaint(self):
         self.compiled()
         self.assertEqual(len(self.read()[1]), 1)
+
+    @unittest.skipUnless(shutil.which(check_tidy.TOOL), "clang-tidy is not installed")
+    def test_a_planted_fault_is_found_in_a_source_that_is_included(self):
+        self.write(".clang-tidy", "Checks: -*,misc-unused-parameters\nWarningsAsErrors: '*'\n"
+                                  "HeaderFilterRegex: '/common/[a-z]*\\.(h|cpp)$'\n")
+        self.write("common/b.cpp", "int g(int unused) { return 1; }\n")
+        whole = "".join(f'#include "{self.root}/common/{name}.cpp"\n' for name in "ab")
+        self.write("build/tidy/Unity/unity_common.cxx", whole)
+        self.compiled("build/tidy/Unity/unity_common.cxx")
+        complaints = check_tidy.check(self.root)[0]
+        self.assertEqual(len(complaints), 1)
+        self.assertIn("common/b.cpp:1", complaints[0])
 
     @unittest.skipUnless(shutil.which(check_tidy.TOOL), "clang-tidy is not installed")
     def test_a_planted_fault_is_found(self):
