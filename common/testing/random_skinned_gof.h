@@ -50,6 +50,22 @@ class RandomSkinnedGof {
 
   OrderedMesh coded_mesh() const { return {gof.prediction, topology, layers, &*rest_order}; }
 
+  // Sets the residuals of temporal layers without slices to 0.
+  void drop_absent_residuals() {
+    if (gof.temporal_layers.empty()) return;
+    for (Bone& bone : gof.bones) {
+      drop_residuals(bone.rotation_residual, bone.rotation_between, gof.temporal_layers[0]);
+      drop_residuals(bone.origin_residual, bone.origin_between, gof.temporal_layers[0]);
+      drop_residuals(bone.stretch_residual, bone.stretch_between, gof.temporal_layers[0]);
+    }
+    for (std::size_t group = 1; group < gof.group_end.size(); ++group) {
+      for (std::size_t l = gof.group_end[group - 1]; l < gof.group_end[group]; ++l) {
+        Trajectory& t = gof.trajectories[l - kRestFactors];
+        drop_residuals(t.residual, t.temporal_between, gof.temporal_layers[group]);
+      }
+    }
+  }
+
  private:
   static constexpr int kResidualBits = 28;  // maximum width of a magnitude
   static_assert(kMaxResidual == (1U << kResidualBits) - 1);
@@ -115,6 +131,7 @@ class RandomSkinnedGof {
     gof.prediction = static_cast<Prediction>(below(4));
     gof.bones.resize(1 + below(sizes.max_bones));
     if (coin()) header.profile_idc = kProfileHigh;
+    if (header.profile_idc == kProfileHigh) gof.stretch_flag = coin();
     if (header.profile_idc == kProfileHigh && coin()) {
       gof.track_levels = between(0, kMaxTrackLevels);
       if (coin() && sizes.temporal_layers)
@@ -159,6 +176,17 @@ class RandomSkinnedGof {
       bone.origin_between = order_of_track();
       bone.origin_residual = track();
     }
+    if (gof.stretch_flag) bone.stretch = static_cast<Stretch>(below(3));
+    if (bone.stretch == Stretch::kOwnAxes) {
+      constexpr int kMax = 1 << (kStretchAxisBits - 1);
+      for (std::int32_t& x : bone.stretch_axes) x = between(-kMax, kMax - 1);
+    }
+    if (bone.stretch != Stretch::kNone) {
+      bone.stretch_step_idx = static_cast<std::uint32_t>(between(0, kMaxStepIdx));
+      bone.stretch_order = between(0, kMaxPredictorOrder);
+      bone.stretch_between = order_of_track();
+      bone.stretch_residual = track();
+    }
   }
 
   // Each component group has at most as many temporal layers as the previous one, and none
@@ -171,16 +199,7 @@ class RandomSkinnedGof {
       if (!is_first && num_layers == 0) present = 0;
       gof.temporal_layers.push_back(present);
     }
-    for (Bone& bone : gof.bones) {
-      drop_residuals(bone.rotation_residual, bone.rotation_between, gof.temporal_layers[0]);
-      drop_residuals(bone.origin_residual, bone.origin_between, gof.temporal_layers[0]);
-    }
-    for (std::size_t group = 1; group < gof.group_end.size(); ++group) {
-      for (std::size_t l = gof.group_end[group - 1]; l < gof.group_end[group]; ++l) {
-        Trajectory& t = gof.trajectories[l - kRestFactors];
-        drop_residuals(t.residual, t.temporal_between, gof.temporal_layers[group]);
-      }
-    }
+    drop_absent_residuals();
   }
   void drop_residuals(TrackResiduals& residuals, int between, std::uint32_t present) const {
     if (residuals.empty()) return;

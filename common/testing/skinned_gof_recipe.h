@@ -28,6 +28,11 @@ struct BoneRecipe {
   std::uint32_t origin_order = 0;
   std::uint32_t rotation_between = 0;
   std::uint32_t origin_between = 0;
+  std::uint32_t stretch_idc = 0;
+  std::array<std::uint32_t, 3> stretch_axes{};
+  std::uint32_t stretch_step_idx = 0;
+  std::uint32_t stretch_order = 0;
+  std::uint32_t stretch_between = 0;
 };
 
 // Units of a GOF that begins with frame 0 (6.5 and 6.11), of a shared rig (6.13), and of a GOF
@@ -46,6 +51,7 @@ struct SkinnedGofRecipe {
   std::uint32_t outer_scale = 0;
   // High profile only; set in all its GOFs.
   std::optional<std::uint32_t> num_adaptive_factors;
+  bool stretch_flag = false;
   bool rest_order_flag = false;
   std::uint32_t rest_edge_weight = 0;
   std::uint32_t rest_ring_weight = 0;
@@ -114,6 +120,7 @@ struct SkinnedGofRecipe {
       for (const std::uint32_t layers : layer_group_layers_minus1) w.ue(layers);
       for (const std::uint32_t step : layer_step_minus1) w.u(4, step);
     }
+    if (high_profile) w.flag(stretch_flag);
     if (high_profile) w.flag(rest_order_flag);
     if (rest_order_flag) {
       w.u(6, rest_edge_weight);
@@ -132,6 +139,10 @@ struct SkinnedGofRecipe {
         for (const std::uint32_t x : bone.bone_pivot) r.section.bypass(position_bits + 5, x);
         r.section.bin(models.rotation_flag, bone.rotation_flag);
         r.section.bin(models.origin_flag, bone.origin_flag);
+        if (stretch_flag) r.truncated_unary(models.stretch_idc, bone.stretch_idc);
+        for (const std::uint32_t x : bone.stretch_axes) {
+          if (bone.stretch_idc == 2) r.section.bypass(kStretchAxisBits, x);
+        }
       }
       if (has_tracks && bone.rotation_flag) {
         r.section.bypass(8, bone.rotation_step_idx);
@@ -144,6 +155,12 @@ struct SkinnedGofRecipe {
         r.truncated_unary(models.origin_order, bone.origin_order);
         if (has_levels()) r.truncated_unary(models.origin_between, bone.origin_between);
         track(r, models.origin, bone.origin_between);
+      }
+      if (has_tracks && bone.stretch_idc > 0) {
+        r.section.bypass(8, bone.stretch_step_idx);
+        r.truncated_unary(models.stretch_order, bone.stretch_order);
+        if (has_levels()) r.truncated_unary(models.stretch_between, bone.stretch_between);
+        track(r, models.stretch, bone.stretch_between);
       }
     }
     return r.section.finish();

@@ -18,6 +18,8 @@ inline void remove_motion(SharedRig& rig) {
     still.pivot = bone.pivot;
     still.rotation_flag = bone.rotation_flag;
     still.origin_flag = bone.origin_flag;
+    still.stretch = bone.stretch;
+    still.stretch_axes = bone.stretch_axes;
     bone = still;
   }
   for (Trajectory& t : rig.trajectories) {

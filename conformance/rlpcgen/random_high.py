@@ -56,6 +56,24 @@ class HighSource(random_attributes.AttributeSource, random_main.MainSource):
     def _clip_name_byte(self, ns, indices, arguments):
         return self.numbers.between(0x20, 0x7E)
 
+    def _stretch_flag(self, ns, indices, arguments):
+        return int(self.numbers.chance(40))
+
+    def _stretch_idc(self, ns, indices, arguments):
+        return self.numbers.between(0, 2)
+
+    def _stretch_axes(self, ns, indices, arguments):
+        return self.near(0, 65535)
+
+    def _stretch_step_idx(self, ns, indices, arguments):
+        return self.near(0, 239)
+
+    def _stretch_order(self, ns, indices, arguments):
+        return self.numbers.between(0, 4)
+
+    def _stretch_residual(self, ns, indices, arguments):
+        return self.residual()
+
     def _rest_order_flag(self, ns, indices, arguments):
         return int(self.numbers.chance(60))
 
@@ -213,7 +231,7 @@ class HighSource(random_attributes.AttributeSource, random_main.MainSource):
     def _rotation_between(self, ns, indices, arguments):
         return self.numbers.between(0, 2)
 
-    _origin_between = _temporal_between = _rotation_between
+    _origin_between = _stretch_between = _temporal_between = _rotation_between
 
     def _trajectory_flag(self, ns, indices, arguments):
         return int(self.numbers.chance(self.plan.present_percent))

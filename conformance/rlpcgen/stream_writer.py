@@ -299,7 +299,7 @@ class StreamWriter:
                 reconstructed = 0
             if self.broken:
                 if reconstructed == 0:
-                    ns.update(BoneRotation=[], BoneAxes=[], BoneOrigin=[])
+                    ns.update(IsStretched=[], BoneRotation=[], BoneAxes=[], BoneOrigin=[])
                 for bone in range(reconstructed, b + 1):
                     ns["ReconstructBone"](bone)
                 reconstructed = b + 1

@@ -86,7 +86,8 @@ constexpr std::array kRules = std::to_array<RuleExplanation>({
      "Bones were written in the order of the input, or the index of the parent was written "
      "without adding 1.",
      "Sort bones so that parents come first; 0 is for a bone without parent."},
-    {"R-BON-05", "7.11.2", "The step of rotations or origins has an index above 239.",
+    {"R-BON-05", "7.11.2",
+     "The step of rotations, origins or stretches has an index above 239.",
      "A step was written instead of its index, or the index was computed in another unit.",
      "See 8.12.1: eight indices double the step."},
     {"R-BON-06", "7.11", "More adaptive trajectories are announced than a GOF can have.",

@@ -76,7 +76,7 @@ AffineMap map_of(const BonePlace& place, const Grid& grid) {
   return map;
 }
 
-// Returns the map from the rest shape to the frame. Bones are rigid.
+// Returns the map from the rest shape to the frame. Bind places are rigid.
 AffineMap skin_map(const BonePlace& bind, const BonePlace& place, const Grid& grid) {
   const AffineMap from = map_of(bind, grid);
   AffineMap back;

@@ -40,8 +40,8 @@ struct Bending {
     const SkinInfluences influences = written_influences(skeleton, kShortWhole);
     for (std::size_t f = 0; f < kFrames; ++f) {
       const double t = static_cast<double>(f);
-      const JointPlace first{turn(0.03 * t), {0.1 * t, 1, 0}};
-      places.push_back({first, first.after({turn(0.02 * t), {5, 0, 0}})});
+      const JointPlace first{turn(0.03 * t).toRotationMatrix(), {0.1 * t, 1, 0}};
+      places.push_back({first, first.after({turn(0.02 * t).toRotationMatrix(), {5, 0, 0}})});
       const JointMaps maps = maps_of(f);
       std::vector<float>& xyz = frames.emplace_back();
       for (std::size_t v = 0; v < kVertices; ++v) {
@@ -56,10 +56,7 @@ struct Bending {
     for (std::size_t j = 0; j < 2; ++j) {
       const JointPlace bind = joint_place(skeleton.bones[j].bind, {});
       const JointPlace moved = places[f][j].after(bind.inverse());
-      JointMap map;
-      map.leftCols<3>() = moved.rotation.toRotationMatrix();
-      map.col(3) = moved.origin;
-      maps.push_back(map);
+      maps.push_back(map_of_place(moved));
     }
     return maps;
   }

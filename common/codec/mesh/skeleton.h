@@ -13,8 +13,8 @@
 
 namespace rlpc {
 
-// Place of a bone: the images of the x, y and z axes as unit vectors with 30 fractional bits,
-// and its origin, 1/16 grid units.
+// Place of a bone: the images of its axes, 30 fractional bits, at right angles and of length 1
+// unless it or one that it descends from stretches; and its origin, 1/16 grid units.
 struct BonePlace {
   std::array<Vec3l, 3> axes{};
   Vec3l origin{};

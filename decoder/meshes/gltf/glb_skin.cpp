@@ -1,6 +1,7 @@
 #include "decoder/meshes/gltf/glb_skin.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -109,6 +110,8 @@ GltfJson nodes_of(const JointMotion& motion) {
     nodes.push_back({{"name", "bone " + std::to_string(j)},
                      {"rotation", node.rotation},
                      {"translation", node.translation}});
+    const std::array<float, 3> unscaled{1.0F, 1.0F, 1.0F};
+    if (node.scale != unscaled) nodes.back()["scale"] = node.scale;
     const auto parent = static_cast<std::size_t>(
         node.parent < 0 ? std::int64_t{kRootNode} : node.parent + std::int64_t{kFirstJoint});
     children[parent].push_back(j + kFirstJoint);
@@ -146,6 +149,10 @@ GltfJson animation_of(const Clip& clip, FrameRate frame_rate,
     }
     if (const JointTrack& track = joints[j].translation; !track.keys.empty()) {
       animation.add_channel(node, "translation", track.keys,
+                            buffers.add_values(track.values, "VEC3"));
+    }
+    if (const JointTrack& track = joints[j].scale; !track.keys.empty()) {
+      animation.add_channel(node, "scale", track.keys,
                             buffers.add_values(track.values, "VEC3"));
     }
   }

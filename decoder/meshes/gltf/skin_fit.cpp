@@ -159,8 +159,7 @@ void fit_places(const Skeleton& skeleton, const Grid& grid, const SkinInfluences
     if (!places[f].empty()) continue;
     fit.fit(frames[f], maps);
     for (std::size_t j = 0; j < bind.size(); ++j) {
-      const JointPlace moved{Eigen::Quaterniond(Matrix3d(maps[j].leftCols<3>())).normalized(),
-                             maps[j].col(3)};
+      const JointPlace moved{maps[j].leftCols<3>(), maps[j].col(3)};
       places[f].push_back(moved.after(bind[j]));
     }
   }

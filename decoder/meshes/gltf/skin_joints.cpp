@@ -125,7 +125,7 @@ T value_at(const JointTrack& track, const float* node, std::size_t width, std::u
 
 std::array<float, 16> columns_of(const JointPlace& place) {
   std::array<float, 16> values{};
-  const Eigen::Matrix3d m = place.rotation.toRotationMatrix();
+  const Eigen::Matrix3d& m = place.axes;
   for (Eigen::Index column = 0; column < 3; ++column) {
     for (Eigen::Index row = 0; row < 3; ++row) {
       values[static_cast<std::size_t>(4 * column + row)] = static_cast<float>(m(row, column));
@@ -150,13 +150,44 @@ JointPlace joint_place(const BonePlace& place, const Grid& grid) {
         std::ldexp(static_cast<double>(place.origin[k]) / kOriginFractions + grid.origin[k],
                    grid.log2_step);
   }
-  joint.rotation = Quaterniond(axes).normalized();
+  joint.axes = axes;
   return joint;
+}
+
+JointPlace JointPlace::inverse() const {
+  constexpr double kFlat = 1e-12;  // squared; rounding errors of axes are 1e-9
+  Eigen::Matrix3d products = axes.transpose() * axes;
+  products.diagonal().array() += kFlat;
+  const Eigen::Matrix3d back = products.inverse() * axes.transpose();
+  return {back, -(back * origin)};
+}
+
+TurnAndScale turn_and_scale(const Eigen::Matrix3d& map, const Quaterniond& before) {
+  constexpr double kNothing = 1e-6;
+  constexpr double kEqual = 1e-6;  // factors of 1 are rounded to 2^-28
+  const Vector3d norms = map.colwise().norm();
+  if ((norms.array() - 1.0).abs().maxCoeff() < kEqual) {
+    return {Quaterniond(map).normalized(), Vector3d::Ones()};
+  }
+  Eigen::Matrix3d turn = map;
+  int num_flat = 0;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    if (norms[k] < kNothing) {
+      ++num_flat;
+    } else {
+      turn.col(k) /= norms[k];
+    }
+  }
+  if (num_flat > 1) return {before, norms};
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    if (norms[k] < kNothing) turn.col(k) = turn.col((k + 1) % 3).cross(turn.col((k + 2) % 3));
+  }
+  return {Quaterniond(turn).normalized(), norms};
 }
 
 JointMap map_of_place(const JointPlace& place) {
   JointMap map;
-  map.leftCols<3>() = place.rotation.toRotationMatrix();
+  map.leftCols<3>() = place.axes;
   map.col(3) = place.origin;
   return map;
 }
@@ -182,6 +213,7 @@ JointMotion joint_motion(const Skeleton& skeleton, const Grid& grid,
   motion.clips.assign(spans.size(), std::vector<JointMotion::OfClip>(num_joints));
   std::vector<Quaterniond> rotations(places.size());
   std::vector<Vector3d> origins(places.size());
+  std::vector<Vector3d> scales(places.size());
   for (std::size_t j = 0; j < num_joints; ++j) {
     const std::int32_t parent = skeleton.bones[j].parent;
     for (std::size_t f = 0; f < places.size(); ++f) {
@@ -189,16 +221,24 @@ JointMotion joint_motion(const Skeleton& skeleton, const Grid& grid,
       if (parent >= 0) {
         place = places[f][static_cast<std::size_t>(parent)].inverse().after(place);
       }
-      rotations[f] = place.rotation.normalized();
+      const TurnAndScale local =
+          turn_and_scale(place.axes, f > 0 ? rotations[f - 1] : Quaterniond::Identity());
+      rotations[f] = local.turn;
+      scales[f] = local.scale;
       if (f > 0 && rotations[f].dot(rotations[f - 1]) < 0) rotations[f].coeffs() *= -1;
       origins[f] = place.origin;
     }
     JointMotion::Node& node = motion.nodes[j];
     node.parent = parent;
+    const double turn_tolerance = reach[j] > 0 ? tolerance / reach[j] : 1;
     const auto turn = add_tracks<Quaterniond>(
-        rotations, spans, reach[j] > 0 ? tolerance / reach[j] : 1,
+        rotations, spans, turn_tolerance,
         [&](std::size_t i) -> JointTrack& { return motion.clips[i][j].rotation; });
     std::ranges::copy(turn, node.rotation.begin());
+    const auto scale = add_tracks<Vector3d>(
+        scales, spans, turn_tolerance,
+        [&](std::size_t i) -> JointTrack& { return motion.clips[i][j].scale; });
+    std::ranges::copy(scale, node.scale.begin());
     const auto shift = add_tracks<Vector3d>(
         origins, spans, tolerance,
         [&](std::size_t i) -> JointTrack& { return motion.clips[i][j].translation; });
@@ -215,17 +255,16 @@ JointMaps joint_maps(const JointMotion& motion, std::size_t clip, std::uint32_t 
   for (std::size_t j = 0; j < motion.nodes.size(); ++j) {
     const JointMotion::Node& node = motion.nodes[j];
     const JointMotion::OfClip& tracks = motion.clips[clip][j];
-    JointPlace place{value_at<Quaterniond>(tracks.rotation, node.rotation.data(), 4, frame),
+    const auto turn = value_at<Quaterniond>(tracks.rotation, node.rotation.data(), 4, frame);
+    const auto scale = value_at<Vector3d>(tracks.scale, node.scale.data(), 3, frame);
+    JointPlace place{turn.toRotationMatrix() * scale.asDiagonal(),
                      value_at<Vector3d>(tracks.translation, node.translation.data(), 3, frame)};
     if (node.parent >= 0) place = places[static_cast<std::size_t>(node.parent)].after(place);
     places.push_back(place);
     const auto& columns = motion.inverse_bind[j];
     const Eigen::Matrix4d bind =
         Eigen::Map<const Eigen::Matrix4f>(columns.data()).cast<double>();
-    JointMap map;
-    map.leftCols<3>() = place.rotation.toRotationMatrix();
-    map.col(3) = place.origin;
-    maps.push_back(map * bind);
+    maps.push_back(map_of_place(place) * bind);
   }
   return maps;
 }

@@ -14,19 +14,18 @@
 
 namespace rlpc {
 
-// Rotation and origin of a joint, in units of the input.
+// Images of the axes of a joint, a rotation unless it or one above it stretches, and its
+// origin, in units of the input.
 struct JointPlace {
-  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
 
-  Eigen::Vector3d moved(const Eigen::Vector3d& p) const { return rotation * p + origin; }
+  Eigen::Vector3d moved(const Eigen::Vector3d& p) const { return axes * p + origin; }
   JointPlace after(const JointPlace& first) const {
-    return {rotation * first.rotation, moved(first.origin)};
+    return {axes * first.axes, moved(first.origin)};
   }
-  JointPlace inverse() const {
-    const Eigen::Quaterniond back = rotation.conjugate();
-    return {back, -(back * origin)};
-  }
+  // Of a joint that has shrunk to nothing, the inverse maps all to one point.
+  JointPlace inverse() const;
 };
 
 using JointPlaces = std::vector<JointPlace>;  // [joint]
@@ -36,6 +35,15 @@ using JointMaps = std::vector<JointMap>;  // [joint]
 
 JointPlace joint_place(const BonePlace& place, const Grid& grid);
 JointMap map_of_place(const JointPlace& place);
+
+// A linear map as a rotation after factors along the axes, as nodes of glTF have it.
+struct TurnAndScale {
+  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+};
+// Returns turn and scale of a map whose columns are at right angles. before: the turn to keep
+// where factors of 0 leave it open.
+TurnAndScale turn_and_scale(const Eigen::Matrix3d& map, const Eigen::Quaterniond& before);
 
 // Keys of a track within a clip: frames of the clip, and `width` numbers for each. No keys: the
 // value of the node, constantly.
@@ -50,10 +58,12 @@ struct JointMotion {
     std::int32_t parent = -1;
     std::array<float, 4> rotation{};  // x, y, z, w
     std::array<float, 3> translation{};
+    std::array<float, 3> scale{1.0F, 1.0F, 1.0F};
   };
   struct OfClip {
     JointTrack rotation;
     JointTrack translation;
+    JointTrack scale;
   };
 
   std::vector<Node> nodes;                          // [joint], as in frame 0

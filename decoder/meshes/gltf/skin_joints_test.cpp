@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -42,13 +43,15 @@ TEST(KeysToWrite, AreAllFramesWhereTheseAreSmaller) {
 // An arm of two bones, in units of the grid: the second one turns about the end of the first.
 class Arm {
  public:
-  Arm() {
+  // shrinks: the upper bone gets shorter along x, and the lower one with it.
+  explicit Arm(bool shrinks = false) {
     constexpr std::int64_t kOne = std::int64_t{1} << 30;
     const std::array<Vec3l, 3> axes{{{kOne, 0, 0}, {0, kOne, 0}, {0, 0, kOne}}};
     skeleton_.bones = {{-1, {axes, {0, 0, 0}}}, {0, {axes, {160, 0, 0}}}};  // 10 units apart
     for (int f = 0; f < 40; ++f) {
-      const JointPlace upper{turn(0.02 * f), {0, 0, 1.0 * (f < 20 ? 0 : f - 20)}};
-      const JointPlace lower = upper.after({turn(0.05 * f), {10, 0, 0}});
+      JointPlace upper{turn(0.02 * f).toRotationMatrix(), {0, 0, 1.0 * (f < 20 ? 0 : f - 20)}};
+      if (shrinks) upper.axes.col(0) *= 1.0 - 0.02 * f;
+      const JointPlace lower = upper.after({turn(0.05 * f).toRotationMatrix(), {10, 0, 0}});
       places_.push_back({upper, lower});
     }
   }
@@ -98,6 +101,35 @@ TEST(JointMotion, OfEvenRotationsHasKeysAtTheEnds) {
   const JointMotion::OfClip& upper = motion.clips[0][0];
   EXPECT_EQ(upper.translation.keys, (std::vector<std::uint32_t>{0, 20, 24}));
   EXPECT_LT(arm.largest_error(motion), 1e-4);
+}
+
+TEST(JointMotion, OfBonesThatStretchHasScales) {
+  const Arm arm(true);
+  const JointMotion motion = arm.motion(1e-4);
+  const JointMotion::OfClip& upper = motion.clips[0][0];
+  EXPECT_EQ(upper.scale.keys, (std::vector<std::uint32_t>{0, 24}));
+  EXPECT_NEAR(upper.scale.values[3], 1.0 - 0.02 * 24, 1e-6);
+  EXPECT_NEAR(upper.scale.values[4], 1.0, 1e-6);
+  EXPECT_TRUE(motion.clips[0][1].scale.keys.empty());
+  EXPECT_LT(arm.largest_error(motion), 2e-4);
+  const Arm still;
+  const JointMotion unscaled = still.motion(1e-4);
+  EXPECT_TRUE(unscaled.clips[0][0].scale.keys.empty());
+  EXPECT_EQ(unscaled.nodes[0].scale, (std::array<float, 3>{1.0F, 1.0F, 1.0F}));
+}
+
+TEST(TurnAndScale, RestoresTurnsAndFactors) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized()));
+  for (const Eigen::Vector3d& scale :
+       {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(0.5, 2, 1), Eigen::Vector3d(0, 1, 3)}) {
+    const Eigen::Matrix3d map = turn.toRotationMatrix() * scale.asDiagonal();
+    const TurnAndScale found = turn_and_scale(map, Eigen::Quaterniond::Identity());
+    EXPECT_LT(found.turn.angularDistance(turn), 1e-6);
+    EXPECT_LT((found.scale - scale).norm(), 1e-9);
+  }
+  const TurnAndScale nothing = turn_and_scale(Eigen::Matrix3d::Zero(), turn);
+  EXPECT_LT(nothing.turn.angularDistance(turn), 1e-9);
+  EXPECT_EQ(nothing.scale, Eigen::Vector3d::Zero());
 }
 
 TEST(JointMotion, StaysNearTheToleranceWithFewerKeys) {

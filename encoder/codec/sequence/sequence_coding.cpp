@@ -56,8 +56,12 @@ InputResult<SpanFrames> SequenceCoding::read_frames(FrameSource& source,
   for (std::uint32_t f = 0; f < span.count; ++f) {
     source.read_bones(span.first + f, std::span(maps).subspan(f * num_bones, num_bones));
   }
-  frames->input_rig =
-      rig_of_span(*source.rig(), maps, header_.grid, connectivity_.input_vertex);
+  const auto rig = [&](bool may_stretch) {
+    return rig_of_span(*source.rig(), maps, header_.grid, connectivity_.input_vertex,
+                       may_stretch);
+  };
+  frames->input_rig = rig(settings_.profile == Profile::kHigh);
+  if (frames->input_rig && frames->input_rig->stretches()) frames->rigid_rig = rig(false);
   return frames;
 }
 

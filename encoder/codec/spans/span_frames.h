@@ -24,6 +24,7 @@ struct SpanFrames {
   std::uint32_t num_gofs = 1;     // GOFs that the span is divided into
   bool has_followers = false;     // later spans may use the shared rig of this one
   std::shared_ptr<const Rig> input_rig = {};  // the rig of the input; null: not known
+  std::shared_ptr<const Rig> rigid_rig = {};  // the same without its stretches; null: has none
 
   // Returns the GOFs, with frames counted from the start of the span.
   std::vector<FrameRange> gofs() const { return equal_ranges(num_frames, num_gofs); }

@@ -25,7 +25,7 @@ enum class Unit : std::uint8_t { kGof, kRig, kTracks };
 std::vector<std::uint8_t> write_bone_section(const SharedRig& rig, Unit unit,
                                              const TrackFrames& frames, int position_bits) {
   SectionWriter section;
-  BoneWriter writer(section, frames);
+  BoneWriter writer(section, frames, rig.stretch_flag);
   for (std::size_t b = 0; b < rig.bones.size(); ++b) {
     if (unit != Unit::kTracks) writer.bone(rig.bones[b], b, position_bits);
     if (unit != Unit::kRig) writer.tracks(rig.bones[b]);
@@ -124,7 +124,7 @@ std::vector<std::uint8_t> SliceWriter::temporal_slice(std::uint32_t group, int t
     // 9.8.1 StartTemporalLayer( )
     models_.trajectory = {};
     std::fill(trajectory_mean_.begin(), trajectory_mean_.end(), 0);
-    BoneWriter writer(section, frames_);
+    BoneWriter writer(section, frames_, gof_.stretch_flag);
     for (const Bone& bone : gof_.bones) writer.layer(bone, temporal_layer);
   } else {
     const FactorGroup group_tracks = tracks_of(group);
@@ -315,7 +315,10 @@ void write_rig_header(BitWriter& w, const SharedRig& rig, std::uint32_t profile_
     write_layer_groups(w, rig.layer_group_size);
     write_layer_steps(w, rig.layer_step);
   }
-  if (profile_idc >= kProfileHigh) write_rest_settings(w, rig.rest);
+  if (profile_idc >= kProfileHigh) {
+    w.flag(rig.stretch_flag);
+    write_rest_settings(w, rig.rest);
+  }
 }
 
 }  // namespace

@@ -24,12 +24,20 @@ inline constexpr std::uint32_t kMaxComponentGroups = 255;
 inline constexpr std::uint32_t kMaxRigs = 8;  // shared rigs at a time
 inline constexpr int kMaxWeightBits = 7;
 inline constexpr std::uint32_t kMaxStepIdx = 239;
+inline constexpr int kStretchAxisBits = 16;
 inline constexpr int kMaxInfluences = 8;
 inline constexpr int kMaxExtraBones = 4;  // per vertex
 inline constexpr int kMaxTemporalWeights = 3;
 inline constexpr int kTemporalWeightOffset = 256;
 // Largest value of temporal_predictor: orders, then 1 to kMaxTemporalWeights weights.
 inline constexpr int kMaxTemporalPredictor = 7;
+
+// stretch_idc (7.11.2): the axes along which a bone stretches.
+enum class Stretch : std::uint8_t {
+  kNone = 0,
+  kRestAxes = 1,  // those of the rest shape
+  kOwnAxes = 2,   // those that stretch_axes turn them to
+};
 
 // Residuals of a series of three coordinates, in steps; [num_gof_frames].
 using TrackResiduals = Vector<Vec3i>;
@@ -47,6 +55,12 @@ struct Bone {
   int origin_order = 0;    // 0 to kMaxPredictorOrder
   int origin_between = 0;  // 0 to kMaxBetween
   TrackResiduals origin_residual;
+  Stretch stretch = Stretch::kNone;
+  Vec3i stretch_axes{};  // vector part of a quaternion, 15 fractional bits; kOwnAxes
+  std::uint32_t stretch_step_idx = 0;
+  int stretch_order = 0;    // 0 to kMaxPredictorOrder
+  int stretch_between = 0;  // 0 to kMaxBetween
+  TrackResiduals stretch_residual;
 
   bool operator==(const Bone&) const = default;
 };
@@ -91,6 +105,7 @@ struct SharedRig {
   std::uint32_t rest_step = 1;  // 1/16 grid units
   Prediction prediction = Prediction::kLayers;
   WeightSettings weights;
+  bool stretch_flag = false;  // bones can stretch
   RestSettings rest;
   Vector<std::uint32_t> layer_group_size;  // [num_layer_groups] layers
   Vector<std::uint8_t> layer_step;         // [layer], 1 to kMaxLayerStep

@@ -24,12 +24,16 @@ using VertexModels = std::array<ResidualModels, kActivityContexts>;
 struct BoneModels {
   BitModel rotation_flag;
   BitModel origin_flag;
+  std::array<BitModel, 2> stretch_idc;
   std::array<BitModel, kMaxPredictorOrder - 1> rotation_order;
   std::array<BitModel, kMaxPredictorOrder> origin_order;
+  std::array<BitModel, kMaxPredictorOrder> stretch_order;
   std::array<BitModel, kMaxBetween> rotation_between;
   std::array<BitModel, kMaxBetween> origin_between;
+  std::array<BitModel, kMaxBetween> stretch_between;
   TrackModels rotation;
   TrackModels origin;
+  TrackModels stretch;
 };
 
 // 9.8.1: models of the slices of a GOF, except those of spatial residuals.

@@ -25,8 +25,10 @@ std::unique_ptr<GofRecon> SkinnedDecoder::make_recon(const SkinnedGof& gof,
 std::uint64_t SkinnedDecoder::memory_of_gof(const SkinnedGof& gof,
                                             const SequenceHeader& header) {
   const std::uint64_t factors = gof.trajectories.size();
+  const std::uint64_t tracks_of_bone = gof.stretch_flag ? 6 : 4;
   const std::uint64_t track_bytes =
-      memory_of_tracks(std::uint64_t{3} * gof.num_frames * (factors + 4 * gof.bones.size())) +
+      memory_of_tracks(std::uint64_t{3} * gof.num_frames *
+                       (factors + tracks_of_bone * gof.bones.size())) +
       memory_of_trajectories(factors);
   const std::uint64_t factor_bytes = memory_of_spatial(header.num_vertices, factors);
   if (gof.rig) return track_bytes + factor_bytes;

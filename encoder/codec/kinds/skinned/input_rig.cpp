@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/codec/kinds/skinned/skinned_gof.h"
+#include "encoder/codec/kinds/skinned/fit/bone_stretch.h"
 #include "encoder/codec/kinds/skinned/fit/rigid_motion.h"
 #include "encoder/codec/math/det_math.h"
 
@@ -45,6 +46,31 @@ bool are_moderate(const SourceRig& source, std::span<const BoneMap> maps) {
 
 Vec3d point_of(const double* xyz) { return {xyz[0], xyz[1], xyz[2]}; }
 
+// Returns the columns in the order and with the signs that make the rotation smallest.
+Eigen::Matrix3d nearest_order(const Eigen::Matrix3d& axes) {
+  constexpr double kBelowTraces = -4.0;  // fixed: those of matrices of unit vectors are above
+  // fixed: all orders
+  constexpr std::array<std::array<int, 3>, 6> kOrders{
+      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+  Eigen::Matrix3d best = axes;
+  double largest_trace = kBelowTraces;
+  for (const auto& order : kOrders) {
+    for (unsigned signs = 0; signs < 8; ++signs) {
+      Eigen::Matrix3d turned;
+      for (int c = 0; c < 3; ++c) {
+        turned.col(c) = ((signs >> c & 1U) != 0 ? -1.0 : 1.0) *
+                        axes.col(order[static_cast<std::size_t>(c)]);
+      }
+      const Vec3d third = cross_matrix(turned.col(0)) * turned.col(1);
+      const bool is_rotation = third.dot(turned.col(2)) > 0.0;
+      if (!is_rotation || turned.trace() <= largest_trace) continue;
+      largest_trace = turned.trace();
+      best = turned;
+    }
+  }
+  return best;
+}
+
 // Makes the rig of a span from that of a source, which it keeps a reference to.
 class RigMaker {
  public:
@@ -53,15 +79,17 @@ class RigMaker {
     for (const BoneMap& map : maps) maps_.push_back(motion_of(map));
   }
 
-  Rig make(std::span<const std::uint32_t> input_vertex) {
+  Rig make(std::span<const std::uint32_t> input_vertex, bool may_stretch) {
+    points_ = points_of_bones();
     merge_still_bones();
     drop_idle_bones();
+    if (may_stretch) find_stretched_bones();
     Rig rig;
     for (std::size_t b = 0; b < num_bones(); ++b) {
       if (is_kept_[b]) add_bone(b, rig);
     }
     for (const std::uint32_t v : input_vertex) {
-      rig.rest.push_back(on_grid(point_of(&from_.rest[3 * std::size_t{v}])));
+      rig.rest.push_back(on_grid(enlarged(point_of(&from_.rest[3 * std::size_t{v}]))));
       rig.weights.push_back(weights_of(v));
     }
     return rig;
@@ -114,13 +142,12 @@ class RigMaker {
 
   // Finds, for each bone, the one that it is merged with: itself, or one above it.
   void merge_still_bones() {
-    const auto points = points_of_bones();
     bone_of_.resize(num_bones());
     for (std::size_t b = 0; b < num_bones(); ++b) {
       bone_of_[b] = b;
       if (from_.bones[b].parent < 0) continue;
       const std::size_t parent = bone_of_[static_cast<std::size_t>(from_.bones[b].parent)];
-      if (is_still(parent, b, points[b])) bone_of_[b] = parent;
+      if (is_still(parent, b, points_[b])) bone_of_[b] = parent;
     }
   }
 
@@ -157,19 +184,120 @@ class RigMaker {
     return true;
   }
 
+  // Returns what a bone is moved by after its own motion.
+  Eigen::Matrix3d above(std::size_t bone, std::size_t frame) const {
+    if (parent_[bone] == kNone) return Eigen::Matrix3d::Identity();
+    return map(frame, parent_[bone]).leftCols<3>();
+  }
+
+  // Whether an error of the map of bone b, before its parent moves it, displaces any of its
+  // points by more than rounding does.
+  bool shows(const Eigen::Matrix3d& error, std::size_t b, std::size_t frame) const {
+    const Vec3d pivot = point_of(from_.bones[b].pivot.data());
+    const Eigen::Matrix3d displacement = enlarged_ * above(b, frame) * error;
+    return std::any_of(points_[b].begin(), points_[b].end(), [&](const Vec3d& p) {
+      return !((displacement * (p - pivot)).norm() * per_step_ <= kSame);
+    });
+  }
+
+  // Whether maps of bone b relative to its parent, [frame], are as good as rotations.
+  bool are_rotations(std::size_t b, std::span<const Eigen::Matrix3d> local) const {
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    for (std::size_t f = 0; f < local.size(); ++f) {
+      rotation = closest_rotation(local[f], rotation);
+      if (shows(local[f] - rotation, b, f)) return false;
+    }
+    return true;
+  }
+
+  // Finds the stretches of bones, and how much the rest shape must be enlarged for them.
+  void find_stretched_bones() {
+    own_stretch_.assign(num_bones(), Stretch::kNone);
+    is_stretched_.assign(num_bones(), false);
+    stretch_axes_.assign(num_bones(), Eigen::Matrix3d::Identity());
+    bool are_rigid = true;
+    double largest = 1.0;
+    for (std::size_t b = 0; b < num_bones(); ++b) {
+      if (!is_kept_[b]) continue;
+      are_rigid = are_rigid && are_rotations(b, local_maps(b));
+      for (std::size_t f = 0; f < num_frames(); ++f) {
+        for (int c = 0; c < 3; ++c)
+          largest = std::max(largest, map(f, b).row(c).head<3>().norm());
+      }
+    }
+    if (are_rigid) return;
+    enlarge(largest);
+    for (std::size_t b = 0; b < num_bones(); ++b) {
+      if (is_kept_[b]) find_stretch(b);
+    }
+  }
+
+  // Returns the linear maps of a bone relative to its parent, [frame].
+  std::vector<Eigen::Matrix3d> local_maps(std::size_t b) const {
+    std::vector<Eigen::Matrix3d> local;
+    for (std::size_t f = 0; f < num_frames(); ++f) {
+      const Eigen::Matrix3d whole = map(f, b).leftCols<3>();
+      local.push_back(parent_[b] == kNone ? whole : quotient(above(b, f), whole));
+    }
+    return local;
+  }
+
+  // Enlarges the rest shape about its centre.
+  void enlarge(double times) {
+    enlarged_ = times;
+    const double n = static_cast<double>(from_.rest.size()) / 3.0;
+    for (std::size_t i = 0; i < from_.rest.size(); i += 3) {
+      centre_ += point_of(&from_.rest[i]) / n;
+    }
+    for (Motion& m : maps_) {
+      const Vec3d image = moved(m, centre_);
+      m.leftCols<3>() /= times;
+      m.col(3) = image - m.leftCols<3>() * centre_;
+    }
+  }
+  Vec3d enlarged(const Vec3d& p) const { return centre_ + enlarged_ * (p - centre_); }
+
+  // Finds along which axes a bone stretches relative to its parent.
+  void find_stretch(std::size_t b) {
+    const std::vector<Eigen::Matrix3d> local = local_maps(b);
+    const std::size_t parent = parent_[b];
+    is_stretched_[b] = parent != kNone && is_stretched_[parent];
+    if (are_rotations(b, local)) return;
+    is_stretched_[b] = true;
+    std::vector<Eigen::Matrix3d> stretches;
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    bool along_rest = true;
+    for (std::size_t f = 0; f < local.size(); ++f) {
+      rotation = closest_rotation(local[f], rotation);
+      const Eigen::Matrix3d stretch = rotation.transpose() * local[f];
+      stretches.push_back(0.5 * (stretch + stretch.transpose()));
+      Eigen::Matrix3d rest = stretches.back();
+      rest.diagonal().setZero();
+      along_rest = along_rest && !shows(rotation * rest, b, f);
+    }
+    own_stretch_[b] = along_rest ? Stretch::kRestAxes : Stretch::kOwnAxes;
+    if (!along_rest) stretch_axes_[b] = nearest_order(common_axes(stretches));
+  }
+
   void add_bone(std::size_t b, Rig& rig) {
     place_.resize(num_bones());
     place_[b] = static_cast<std::uint32_t>(rig.bones.size());
     RigBone& bone = rig.bones.emplace_back();
     if (parent_[b] != kNone) bone.parent = static_cast<std::int32_t>(place_[parent_[b]]);
-    const Vec3d pivot = point_of(from_.bones[b].pivot.data());
+    const Vec3d pivot = enlarged(point_of(from_.bones[b].pivot.data()));
     bone.pivot = on_grid(pivot);
+    const bool is_stretched = !is_stretched_.empty() && is_stretched_[b];
+    if (is_stretched) {
+      bone.stretch = own_stretch_[b];
+      bone.stretch_turn = rotation_quaternion(stretch_axes_[b]);
+    }
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     for (std::size_t f = 0; f < num_frames(); ++f) {
       rotation = closest_rotation(map(f, b).leftCols<3>(), rotation);
       RigPose pose{rotation_quaternion(rotation), on_grid(moved(map(f, b), pivot))};
       if (!bone.poses.empty()) keep_sign(bone.poses.back().rotation, pose.rotation);
       bone.poses.push_back(pose);
+      if (is_stretched) bone.axes.push_back(images_of(map(f, b).leftCols<3>()));
     }
   }
 
@@ -199,28 +327,38 @@ class RigMaker {
   const SourceRig& from_;
   const Grid& grid_;
   double per_step_;
-  std::vector<Motion> maps_;          // [frame][bone]
-  std::vector<std::size_t> bone_of_;  // [bone], the one that it is merged with, or itself
-  std::vector<bool> is_kept_;         // [bone]
-  std::vector<std::size_t> parent_;   // [bone], those kept; kNone: none
-  std::vector<std::uint32_t> place_;  // [bone] of the source, its index in the rig
+  std::vector<Motion> maps_;                // [frame][bone]
+  std::vector<std::size_t> bone_of_;        // [bone], the one that it is merged with, or itself
+  std::vector<bool> is_kept_;               // [bone]
+  std::vector<std::size_t> parent_;         // [bone], those kept; kNone: none
+  std::vector<std::uint32_t> place_;        // [bone] of the source, its index in the rig
+  std::vector<std::vector<Vec3d>> points_;  // [bone]: points_of_bones()
+  std::vector<Stretch> own_stretch_;        // [bone]; empty: no bone stretches
+  std::vector<bool> is_stretched_;          // [bone]: by itself or with one above it
+  std::vector<Eigen::Matrix3d> stretch_axes_;  // [bone]: columns
+  Vec3d centre_ = Vec3d::Zero();               // about which the rest shape is enlarged
+  double enlarged_ = 1.0;
 };
 
 }  // namespace
 
 std::shared_ptr<const Rig> rig_of_span(const SourceRig& source, std::span<const BoneMap> maps,
                                        const Grid& grid,
-                                       std::span<const std::uint32_t> input_vertex) {
+                                       std::span<const std::uint32_t> input_vertex,
+                                       bool may_stretch) {
   if (!are_moderate(source, maps)) return nullptr;
-  auto rig = std::make_shared<Rig>(RigMaker(source, maps, grid).make(input_vertex));
+  auto rig =
+      std::make_shared<Rig>(RigMaker(source, maps, grid).make(input_vertex, may_stretch));
   const std::size_t count = rig->bones.size();
   if (count < 2 || count > kLevels.back().max_clusters) return nullptr;
   return rig;
 }
 
 std::uint64_t pose_bytes(std::size_t num_bones) {
-  // While the rig is made, maps and motions; then the rig, and two candidates of the search.
-  return (sizeof(BoneMap) + sizeof(Motion) + 3 * sizeof(RigPose)) * num_bones;
+  // While the rig is made, maps and motions; then the rig, the same without its stretches, and
+  // two candidates of the search.
+  return (sizeof(BoneMap) + sizeof(Motion) + 4 * (sizeof(RigPose) + sizeof(AxisImages))) *
+         num_bones;
 }
 
 }  // namespace rlpc

@@ -25,8 +25,14 @@ constexpr std::uint32_t kFrames = 12;
 class Skeleton final : public FrameSource {
  public:
   // turn[b]: speed of bone b, in radians per frame.
-  Skeleton(SourceRig rig, std::vector<double> turn)
-      : FrameSource(shape_of(std::move(rig))), turn_(std::move(turn)) {}
+  // stretch[b]: how much bone b stretches along an axis between x and y, and half as much along
+  // z, before it turns.
+  Skeleton(SourceRig rig, std::vector<double> turn, std::vector<double> stretch = {})
+      : FrameSource(shape_of(std::move(rig))),
+        turn_(std::move(turn)),
+        stretch_(std::move(stretch)) {
+    stretch_.resize(turn_.size());
+  }
 
   std::optional<InputError> read_frame(std::uint32_t frame, std::span<float> xyz) override {
     std::vector<BoneMap> maps(rig()->bones.size());
@@ -56,9 +62,17 @@ class Skeleton final : public FrameSource {
       const double c = std::cos(angle);
       const double s = std::sin(angle);
       const auto& p = bone.pivot;
-      const BoneMap turned{{{c, -s, 0, p[0] - c * p[0] + s * p[1]},
-                            {s, c, 0, p[1] - s * p[0] - c * p[1]},
-                            {0, 0, 1, 0}}};
+      const double grown = stretch_[b] * std::sin(0.7 * frame);
+      const double xx = 1.0 + 0.8 * grown;
+      const double xy = 0.4 * grown;
+      const double yy = 1.0 + 0.2 * grown;
+      BoneMap turned{{{c * xx - s * xy, c * xy - s * yy, 0, 0},
+                      {s * xx + c * xy, s * xy + c * yy, 0, 0},
+                      {0, 0, 1.0 + 0.5 * grown, 0}}};
+      for (std::size_t i = 0; i < 3; ++i) {
+        turned[i][3] = p[i];
+        for (std::size_t k = 0; k < 3; ++k) turned[i][3] -= turned[i][k] * p[k];
+      }
       maps[b] = turned;
       if (bone.parent < 0) continue;
       const BoneMap& above = maps[static_cast<std::size_t>(bone.parent)];
@@ -82,6 +96,7 @@ class Skeleton final : public FrameSource {
   }
 
   std::vector<double> turn_;
+  std::vector<double> stretch_;
 };
 
 // A chain of bones along x, one unit apart, each with two vertices. weights[b]: what they
@@ -117,7 +132,7 @@ std::shared_ptr<const Rig> rig_of(FrameSource& source, const FrameRange& span) {
   for (std::uint32_t f = 0; f < span.count; ++f) {
     source.read_bones(span.first + f, std::span(maps).subspan(f * num_bones, num_bones));
   }
-  return rig_of_span(*source.rig(), maps, fine_grid(), order);
+  return rig_of_span(*source.rig(), maps, fine_grid(), order, true);
 }
 
 void expect_positions(FrameSource& source, const Rig& rig, const FrameRange& span) {
@@ -148,6 +163,55 @@ TEST(InputRig, MovesTheVerticesOfASpan) {
     EXPECT_NEAR(sum, 1.0, 1e-12);
   }
   expect_positions(source, *rig, span);
+}
+
+// The axis of largest growth is that of (2, 1, 0).
+TEST(InputRig, StretchesBonesAndThoseBelow) {
+  Skeleton source(chain({2, 1.5F, 1, 0.5F}), {0.3, -0.2, 0.4, 0.1}, {0, 0.3, 0, -0.2});
+  const FrameRange span{3, 6};
+  const auto rig = rig_of(source, span);
+  ASSERT_TRUE(rig);
+  ASSERT_EQ(rig->bones.size(), 4U);
+  EXPECT_EQ(rig->bones[1].stretch, Stretch::kOwnAxes);
+  EXPECT_EQ(rig->bones[2].stretch, Stretch::kNone);
+  EXPECT_EQ(rig->bones[3].stretch, Stretch::kOwnAxes);
+  for (std::size_t b = 1; b < 4; ++b) EXPECT_EQ(rig->bones[b].axes.size(), span.count);
+  expect_positions(source, *rig, span);
+  const auto& turn = rig->bones[1].stretch_turn;
+  const double angle = 2.0 * std::atan2(turn[3], turn[0]);
+  EXPECT_NEAR(std::abs(std::sin(2.0 * angle)), 0.8, 1e-6);
+  EXPECT_NEAR(turn[1], 0.0, 1e-9);
+  EXPECT_NEAR(turn[2], 0.0, 1e-9);
+}
+
+TEST(InputRig, EnlargesTheRestShapeWhereBonesGrow) {
+  Skeleton source(chain({2, 2, 2}), {0.3, 0.2, 0.1}, {0, 0.5, 0});
+  const FrameRange span{0, kFrames};
+  const auto rig = rig_of(source, span);
+  ASSERT_TRUE(rig);
+  expect_positions(source, *rig, span);
+  EXPECT_EQ(rig->bones[0].stretch, Stretch::kRestAxes);  // keeps its size
+  for (const RigBone& bone : rig->bones) {
+    for (const AxisImages& images : bone.axes) {
+      for (const Point& image : images) {
+        for (const double x : image) EXPECT_LE(std::abs(x), 1.0 + 1e-12);
+      }
+    }
+  }
+}
+
+TEST(InputRig, HasRotationsAloneInProfilesWithoutStretch) {
+  Skeleton source(chain({2, 1.5F, 1}), {0.3, -0.2, 0.4}, {0, 0.3, 0});
+  std::vector<std::uint32_t> order(source.num_vertices());
+  std::iota(order.begin(), order.end(), 0U);
+  std::vector<BoneMap> maps(3);
+  source.read_bones(4, maps);
+  const auto rig = rig_of_span(*source.rig(), maps, fine_grid(), order, false);
+  ASSERT_TRUE(rig);
+  for (const RigBone& bone : rig->bones) {
+    EXPECT_EQ(bone.stretch, Stretch::kNone);
+    EXPECT_TRUE(bone.axes.empty());
+  }
 }
 
 TEST(InputRig, MergesBonesThatStandStillRelativeToTheirParents) {
@@ -201,7 +265,7 @@ TEST(InputRig, HasRotationsWhateverTheMapsAre) {
       }
       if (random() % 4 == 0) map[1] = map[0];  // flat
     }
-    const auto made = rig_of_span(rig, maps, fine_grid(), order);
+    const auto made = rig_of_span(rig, maps, fine_grid(), order, true);
     if (!made) continue;
     for (const RigBone& bone : made->bones) {
       for (const RigPose& pose : bone.poses) {
@@ -222,12 +286,12 @@ TEST(InputRig, IsAbsentWhereNumbersAreOfNoUse) {
     for (std::size_t i = 0; i < maps.size(); ++i) {
       maps[i] = {{{1, 0, 0, static_cast<double>(i * i)}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     }
-    EXPECT_TRUE(rig_of_span(chain({2, 1}), maps, fine_grid(), order));
+    EXPECT_TRUE(rig_of_span(chain({2, 1}), maps, fine_grid(), order, true));
     SourceRig far = chain({2, 1});
     far.rest[4] = x;
-    EXPECT_FALSE(rig_of_span(far, maps, fine_grid(), order));
+    EXPECT_FALSE(rig_of_span(far, maps, fine_grid(), order, true));
     maps[2][1][3] = x;
-    EXPECT_FALSE(rig_of_span(chain({2, 1}), maps, fine_grid(), order));
+    EXPECT_FALSE(rig_of_span(chain({2, 1}), maps, fine_grid(), order, true));
   }
 }
 

@@ -1,4 +1,4 @@
-// 8.12 Bones: reconstructs rigid motions from residuals, in integers.
+// 8.12 Bones: reconstructs rigid motions, and their stretch, from residuals, in integers.
 #pragma once
 
 #include <array>
@@ -23,15 +23,17 @@ std::int64_t step_of(std::uint32_t idx);
 
 // Pose of a bone in one frame.
 struct BonePose {
-  Quaternion rotation = kNoRotation;
-  std::array<Vec3l, 3> axes{};
+  Quaternion rotation = kNoRotation;  // not used of a stretched bone
+  BoneAxes axes{};
   Vec3l origin{};
 };
 
 struct BoneMotion {
   std::int32_t parent = -1;  // index; -1: root
   Vec3l pivot{};
-  Vector<BonePose> poses;  // [num_gof_frames]
+  bool is_stretched = false;  // the bone or one that it descends from stretches
+  BoneAxes along{};           // stretch_axes()
+  Vector<BonePose> poses;     // [num_gof_frames]
 };
 
 // 8.12.3 Moved point; |point| < 2^31.
@@ -78,10 +80,21 @@ constexpr std::int64_t offset_from(std::int64_t predicted, std::int32_t residual
   return clip_signed(kOriginBits, predicted + residual * step);
 }
 
-// Returns the motion of a bone from its rotations relative to the parent and the offsets of its
-// origin, [num_gof_frames]. parent: null for a root.
+// The axes along which a bone stretches; those of the rest shape if it does not.
+BoneAxes stretch_axes(const Bone& bone);
+// 8.12.5 StretchMap( b, differences ): the images of the axes of the rest shape. along:
+// stretch_axes().
+BoneAxes stretch_map(const BoneAxes& along, const Vec3l& differences);
+
+// Values of a bone relative to its parent, [num_gof_frames] each.
+struct RelativeMotion {
+  Vector<Quaternion> rotations;
+  Vector<Vec3l> offsets;    // of the origin
+  Vector<Vec3l> stretches;  // 8.12.5: differences of the factors
+};
+// Returns the motion of a bone. parent: null for a root.
 BoneMotion move_bone(const Bone& bone, const BoneMotion* parent,
-                     std::span<const Quaternion> relative, std::span<const Vec3l> offset);
+                     const RelativeMotion& relative);
 
 // Returns the place in frame f to which the parent moves the pivot of a bone: its origin
 // without an offset.

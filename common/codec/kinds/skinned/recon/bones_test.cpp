@@ -329,5 +329,149 @@ TEST(Bones, OriginsAreClippedToTheirRange) {
   }
 }
 
+constexpr std::int64_t kFactorOne = std::int64_t{1} << kStretchFractionBits;
+
+Bone stretched_bone(RandomRotations& random, std::size_t b) {
+  Bone bone = random_bone(random, b);
+  bone.stretch = static_cast<Stretch>(random.below(3));
+  if (bone.stretch == Stretch::kOwnAxes) {
+    for (std::int32_t& x : bone.stretch_axes) {
+      x = static_cast<std::int32_t>(random.magnitude_below(1 << 15));
+    }
+  }
+  bone.stretch_step_idx = 8 * 20;
+  bone.stretch_order = static_cast<int>(random.below(3));
+  bone.stretch_residual.resize(kFrames);
+  for (Vec3i& residual : bone.stretch_residual) {
+    for (std::int32_t& x : residual) x = static_cast<std::int32_t>(random.magnitude_below(40));
+  }
+  return bone;
+}
+
+using RealAxes = std::array<std::array<double, 3>, 3>;  // images of the axes
+
+RealAxes real(const BoneAxes& axes) {
+  RealAxes result{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      result[k][c] = static_cast<double>(axes[k][c]) / kQuaternionOne;
+    }
+  }
+  return result;
+}
+
+RealAxes product(const RealAxes& p, const RealAxes& q) {
+  RealAxes result{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t i = 0; i < 3; ++i) result[k][c] += p[i][c] * q[k][i];
+    }
+  }
+  return result;
+}
+
+// The images under diag( factors ) in a coordinate frame.
+RealAxes real_stretch(const RealAxes& along, const std::array<double, 3>& factors) {
+  RealAxes result{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        result[k][c] += factors[i] * along[i][k] * along[i][c];
+      }
+    }
+  }
+  return result;
+}
+
+// Rotations relative to the parent and stretches are those of a bone without a parent.
+TEST(StretchedBones, AreScaledThenTurnedThenMovedWithTheirParent) {
+  std::size_t num_clipped = 0;
+  std::size_t num_free = 0;
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomRotations random(seed);
+    std::vector<Bone> bones;
+    for (std::size_t b = 0; b < 4; ++b) bones.push_back(stretched_bone(random, b));
+    const std::vector<BoneMotion> motions = recon_bones(bones, kFrames, 0);
+    for (std::size_t b = 0; b < bones.size(); ++b) {
+      const Bone& bone = bones[b];
+      const bool parent_stretches =
+          bone.parent >= 0 && motions[static_cast<std::size_t>(bone.parent)].is_stretched;
+      EXPECT_EQ(motions[b].is_stretched, bone.stretch != Stretch::kNone || parent_stretches);
+      if (!motions[b].is_stretched) continue;
+      Bone alone = bone;
+      alone.parent = -1;
+      alone.stretch = Stretch::kNone;
+      const BoneMotion turning = recon_bones(std::vector<Bone>{alone}, kFrames, 0)[0];
+      std::array<std::vector<std::int64_t>, 3> series;
+      for (std::uint32_t f = 0; f < kFrames; ++f) {
+        std::array<double, 3> factors{1.0, 1.0, 1.0};
+        for (std::size_t c = 0; c < 3 && bone.stretch != Stretch::kNone; ++c) {
+          const auto known = [&](std::uint32_t i) { return series[c][i]; };
+          series[c].push_back(
+              std::clamp(predict_series(known, f, bone.stretch_order) +
+                             std::int64_t{bone.stretch_residual[f][c]} * (1 << 20),
+                         -kOneI, kOneI - 1));
+        }
+        for (std::size_t i = 0; i < 3 && bone.stretch != Stretch::kNone; ++i) {
+          const std::int64_t factor = kFactorOne + series[0][f] + (i == 0 ? 0 : series[i][f]);
+          factors[i] = std::clamp(static_cast<double>(factor) / kFactorOne, 0.0, 4.0);
+        }
+        RealAxes expected = product(real(turning.poses[f].axes),
+                                    real_stretch(real(stretch_axes(bone)), factors));
+        if (bone.parent >= 0) {
+          const auto parent = static_cast<std::size_t>(bone.parent);
+          expected = product(real(motions[parent].poses[f].axes), expected);
+        }
+        const RealAxes found = real(motions[b].poses[f].axes);
+        for (std::size_t k = 0; k < 3; ++k) {
+          for (std::size_t c = 0; c < 3; ++c) {
+            ASSERT_NEAR(found[k][c], std::clamp(expected[k][c], -1.0, 1.0), 1e-7) << b;
+            ++(std::abs(expected[k][c]) > 1.0 ? num_clipped : num_free);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(num_clipped, 100U);
+  EXPECT_GT(num_free, 10000U);
+}
+
+TEST(StretchedBones, KeepTheRestShapeWithoutDifferences) {
+  Bone bone;
+  bone.stretch = Stretch::kRestAxes;
+  bone.stretch_residual.resize(2);
+  for (const BonePose& pose : recon_bones(std::vector<Bone>{bone}, 2, 0)[0].poses) {
+    EXPECT_EQ(pose.axes, axes_of(kNoRotation));
+  }
+}
+
+// Differences that jump between their bounds, at the largest steps, through a chain of bones.
+TEST(StretchedBones, AreClippedToTheirRange) {
+  std::vector<Bone> bones(4);
+  for (std::size_t b = 0; b < bones.size(); ++b) {
+    bones[b].parent = static_cast<std::int32_t>(b) - 1;
+    bones[b].stretch = Stretch::kOwnAxes;
+    bones[b].stretch_axes = {-32768, 32767, b % 2 == 0 ? 20000 : -32768};
+    bones[b].stretch_step_idx = kMaxStepIdx;
+    for (std::int32_t f = 0; f < 20; ++f) {
+      const std::int32_t now = f / 2 % 2 == 0 ? kResidualBound : -kResidualBound;
+      bones[b].stretch_residual.push_back({now, f % 3 == 0 ? now : -now, f % 5});
+    }
+  }
+  bool reached = false;
+  for (const BoneMotion& motion : recon_bones(bones, 20, 0)) {
+    for (const BonePose& pose : motion.poses) {
+      for (const Vec3l& axis : pose.axes) {
+        for (const std::int64_t x : axis) {
+          EXPECT_LE(std::abs(x), kOneI);
+          reached = reached || std::abs(x) == kOneI;
+        }
+      }
+    }
+  }
+  EXPECT_TRUE(reached);
+}
+
 }  // namespace
 }  // namespace rlpc

@@ -35,7 +35,7 @@ Quaternion rotation_after(const Quaternion& p, const Quaternion& q) {
   return normalize_quaternion(product);
 }
 
-std::array<Vec3l, 3> axes_of(const Quaternion& q) {
+BoneAxes axes_of(const Quaternion& q) {
   const auto [w, x, y, z] = q;
   constexpr std::int64_t kOne = std::int64_t{1} << kQuaternionFractionBits;
   const auto twice = [](std::int64_t product) {
@@ -44,6 +44,27 @@ std::array<Vec3l, 3> axes_of(const Quaternion& q) {
   return {{{kOne - twice(y * y + z * z), twice(x * y + w * z), twice(x * z - w * y)},
            {twice(x * y - w * z), kOne - twice(x * x + z * z), twice(y * z + w * x)},
            {twice(x * z + w * y), twice(y * z - w * x), kOne - twice(x * x + y * y)}}};
+}
+
+BoneAxes product_of_axes(const BoneAxes& p, const BoneAxes& q, int bits) {
+  BoneAxes axes{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::int64_t sum = p[0][c] * q[k][0] + p[1][c] * q[k][1] + p[2][c] * q[k][2];
+      axes[k][c] = round2(sum, bits);
+    }
+  }
+  return axes;
+}
+
+// 8.12.5 Stretch
+BoneAxes axes_after(const BoneAxes& p, const BoneAxes& q, int bits) {
+  constexpr std::int64_t kOne = std::int64_t{1} << kQuaternionFractionBits;
+  BoneAxes axes = product_of_axes(p, q, bits);
+  for (Vec3l& axis : axes) {
+    for (std::int64_t& x : axis) x = clip3(-kOne, kOne, x);
+  }
+  return axes;
 }
 
 }  // namespace rlpc

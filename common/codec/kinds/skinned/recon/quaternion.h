@@ -22,7 +22,16 @@ Quaternion rotation_after(const Quaternion& p, const Quaternion& q);
 constexpr bool is_opposite(const Quaternion& p, const Quaternion& q) {
   return p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3] < 0;
 }
-// 8.12.4 AxesOf( q ): the images of the x, y and z axis.
-std::array<Vec3l, 3> axes_of(const Quaternion& q);
+// Images of the x, y and z axes under a rotation, 30 fractional bits, or under a stretch.
+using BoneAxes = std::array<Vec3l, 3>;
+// 8.12.4 AxesOf( q )
+BoneAxes axes_of(const Quaternion& q);
+// The images under q followed by p; bits: fractional bits that a product of coordinates has
+// more than the result.
+BoneAxes product_of_axes(const BoneAxes& p, const BoneAxes& q, int bits);
+// 8.12.5 AxesAfter( p, q, bits ): the images under q followed by p; |coordinates| <= 2^30 + 32.
+BoneAxes axes_after(const BoneAxes& p, const BoneAxes& q, int bits);
+
+inline constexpr int kStretchFractionBits = 28;
 
 }  // namespace rlpc

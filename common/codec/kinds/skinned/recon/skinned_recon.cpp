@@ -68,7 +68,8 @@ SkinnedRecon::SkinnedRecon(std::shared_ptr<const RigRecon> rig, const SkinnedGof
       rig_(std::move(rig)),
       bones_(recon_bones(gof.bones, gof.num_frames, gof.track_levels)) {
   for (const Bone& bone : gof.bones) {
-    values_of_frame_ += 3 * (std::size_t{bone.rotation_flag} + std::size_t{bone.origin_flag});
+    values_of_frame_ += 3 * (std::size_t{bone.rotation_flag} + std::size_t{bone.origin_flag} +
+                             std::size_t{bone.stretch != Stretch::kNone});
   }
   values_of_frame_ += 3 * gof.trajectories.size();
   Vector<TemporalFactor> temporal;
@@ -92,7 +93,7 @@ Skeleton SkinnedRecon::skeleton() const {
   skeleton.step = rest_step_;
   skeleton.values_of_vertex = kRestFactors + rig_->factors()->num_components();
   for (const BoneMotion& bone : bones_) {
-    skeleton.bones.push_back({bone.parent, {axes_of(kNoRotation), bone.pivot}});
+    skeleton.bones.push_back({bone.parent, {bone.along, bone.pivot}});
   }
   skeleton.influences.resize(rig_->num_vertices());
   for (std::size_t tile = 0; tile < rig_->num_tiles(); ++tile) {
@@ -111,7 +112,10 @@ Skeleton SkinnedRecon::skeleton() const {
 Vector<BonePlace> SkinnedRecon::places(std::uint32_t f) const {
   Vector<BonePlace> places;
   for (const BoneMotion& bone : bones_) {
-    places.push_back({bone.poses[f].axes, bone.poses[f].origin});
+    const BonePose& pose = bone.poses[f];
+    // The axes along which a bone stretches are its own; otherwise, those of the rest shape.
+    places.push_back(
+        {product_of_axes(pose.axes, bone.along, kQuaternionFractionBits), pose.origin});
   }
   return places;
 }

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "common/codec/bits/int_math.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
@@ -23,8 +25,8 @@ class BoneParser {
       : section_(section),
         header_(header),
         frames_(track_frames(gof)),
-        rotation_mean_(gof.num_frames, 0),
-        origin_mean_(gof.num_frames, 0) {}
+        stretch_flag_(gof.stretch_flag),
+        mean_(3 * std::size_t{gof.num_frames}, 0) {}
 
   // bone( b )
   Bone bone(std::uint32_t b) {
@@ -40,6 +42,16 @@ class BoneParser {
     }
     bone.rotation_flag = section_.bin(models_.rotation_flag, "rotation_flag");
     bone.origin_flag = section_.bin(models_.origin_flag, "origin_flag");
+    if (stretch_flag_) {
+      bone.stretch =
+          static_cast<Stretch>(section_.truncated_unary(models_.stretch_idc, "stretch_idc"));
+    }
+    if (bone.stretch == Stretch::kOwnAxes) {
+      for (std::int32_t& x : bone.stretch_axes) {
+        const std::uint32_t value = section_.bypass(kStretchAxisBits, "stretch_axes");
+        x = static_cast<std::int32_t>(value) - (1 << (kStretchAxisBits - 1));
+      }
+    }
     return bone;
   }
 
@@ -50,15 +62,19 @@ class BoneParser {
       bone.rotation_order =
           section_.truncated_unary(models_.rotation_order, "rotation_order_minus1") + 1;
       bone.rotation_between = between(models_.rotation_between, "rotation_between");
-      bone.rotation_residual.assign(frames_.count, {});
       rotations(bone, 0);
     }
     if (bone.origin_flag) {
       bone.origin_step_idx = step_idx("origin_step_idx");
       bone.origin_order = section_.truncated_unary(models_.origin_order, "origin_order");
       bone.origin_between = between(models_.origin_between, "origin_between");
-      bone.origin_residual.assign(frames_.count, {});
       origins(bone, 0);
+    }
+    if (bone.stretch != Stretch::kNone) {
+      bone.stretch_step_idx = step_idx("stretch_step_idx");
+      bone.stretch_order = section_.truncated_unary(models_.stretch_order, "stretch_order");
+      bone.stretch_between = between(models_.stretch_between, "stretch_between");
+      stretches(bone, 0);
     }
   }
 
@@ -71,20 +87,30 @@ class BoneParser {
   void layer(Bone& bone, int temporal_layer) {
     if (bone.rotation_flag) rotations(bone, temporal_layer);
     if (bone.origin_flag) origins(bone, temporal_layer);
+    if (bone.stretch != Stretch::kNone) stretches(bone, temporal_layer);
   }
 
  private:
   // rotation_residuals( layer )
   void rotations(Bone& bone, int temporal_layer) {
-    parse_track(section_, models_.rotation, rotation_mean_,
-                places_of_layer(frames_, bone.rotation_between, temporal_layer),
-                bone.rotation_residual, "rotation_residual");
+    residuals(models_.rotation, 0, bone.rotation_between, temporal_layer,
+              bone.rotation_residual, "rotation_residual");
   }
   // origin_residuals( layer )
   void origins(Bone& bone, int temporal_layer) {
-    parse_track(section_, models_.origin, origin_mean_,
-                places_of_layer(frames_, bone.origin_between, temporal_layer),
-                bone.origin_residual, "origin_residual");
+    residuals(models_.origin, 1, bone.origin_between, temporal_layer, bone.origin_residual,
+              "origin_residual");
+  }
+  // stretch_residuals( layer )
+  void stretches(Bone& bone, int temporal_layer) {
+    residuals(models_.stretch, 2, bone.stretch_between, temporal_layer, bone.stretch_residual,
+              "stretch_residual");
+  }
+  void residuals(TrackModels& models, std::size_t mean, int between_idc, int temporal_layer,
+                 TrackResiduals& values, const char* element) {
+    if (temporal_layer == 0) values.assign(frames_.count, {});
+    parse_track(section_, models, std::span(mean_).subspan(mean * frames_.count, frames_.count),
+                places_of_layer(frames_, between_idc, temporal_layer), values, element);
   }
 
   std::uint32_t step_idx(const char* element) {
@@ -100,9 +126,9 @@ class BoneParser {
   SectionReader& section_;
   const SequenceHeader& header_;
   TrackFrames frames_;
+  bool stretch_flag_;
   BoneModels models_;
-  Vector<std::uint32_t> rotation_mean_;
-  Vector<std::uint32_t> origin_mean_;
+  Vector<std::uint32_t> mean_;  // RotationMean, OriginMean, StretchMean: [3][num_gof_frames]
 };
 
 }  // namespace rlpc

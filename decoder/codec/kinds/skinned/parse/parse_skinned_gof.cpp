@@ -181,6 +181,7 @@ void SkinnedGofParser::load_rig() {
   gof_.weights = rig.weights;
   gof_.layer_group_size = rig.layer_group_size;
   gof_.layer_step = rig.layer_step;
+  gof_.stretch_flag = rig.stretch_flag;
   gof_.bones = rig.bones;
   gof_.num_component_groups = rig.num_component_groups;
   gof_.group_end = {rig.group_end.back()};

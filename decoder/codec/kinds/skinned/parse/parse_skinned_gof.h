@@ -79,7 +79,8 @@ class SkinnedGofParser final : public GofParser {
     std::uint64_t track_values = 0;
   };
   std::uint64_t factors_of_bones() const {
-    return 6 * std::uint64_t{gof_.bones.size()} * gof_.num_frames;
+    const std::uint64_t values = gof_.stretch_flag ? 9 : 6;
+    return values * gof_.bones.size() * gof_.num_frames;
   }
   void count_factors(SectionReader& section, const Factors& factors, const char* element);
   // Returns whether slices of the group have only tracks: the shared rig has the vertices.

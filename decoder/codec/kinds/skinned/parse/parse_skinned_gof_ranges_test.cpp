@@ -91,6 +91,13 @@ TEST(ParseSkinnedGofRanges, ElementsAreTakenUpToTheirBoundsAndNotBeyond) {
          r.bones[0].origin_flag = true;
          r.bones[0].origin_step_idx = v;
        }},
+      {"R-BON-05", "stretch_step_idx", 239,
+       [](auto& r, auto v) {
+         r.track_levels = 0;
+         r.stretch_flag = true;
+         r.bones[0].stretch_idc = 1;
+         r.bones[0].stretch_step_idx = v;
+       }},
   };
   for (const Bound& bound : bounds) {
     SkinnedGofRecipe recipe;
@@ -99,6 +106,32 @@ TEST(ParseSkinnedGofRanges, ElementsAreTakenUpToTheirBoundsAndNotBeyond) {
     recipe = {};
     bound.set(recipe, bound.max + 1);
     expect_invalid(Gof(recipe).parsed, bound.rule, bound.element);
+  }
+}
+
+TEST(ParseSkinnedGofRanges, BonesTakeAllStretches) {
+  for (std::uint32_t i = 0; i < 15; ++i) {
+    SkinnedGofRecipe recipe;
+    recipe.track_levels = i % 4;
+    recipe.stretch_flag = true;
+    recipe.bones.resize(2);
+    BoneRecipe& bone = recipe.bones[i % 2];
+    bone.stretch_idc = i % 3;
+    bone.stretch_axes = {0, 40000 + i, 65535};
+    bone.stretch_order = i % 5;
+    bone.stretch_between = i % 3;
+    const Gof parsed(recipe);
+    ASSERT_TRUE(parsed.parsed) << i;
+    EXPECT_TRUE(parsed.gof.stretch_flag);
+    const Bone& b = parsed.gof.bones[i % 2];
+    EXPECT_EQ(b.stretch, static_cast<Stretch>(i % 3));
+    const auto x = static_cast<std::int32_t>(i);
+    EXPECT_EQ(b.stretch_axes, i % 3 == 2 ? (Vec3i{-32768, 7232 + x, 32767}) : Vec3i{});
+    EXPECT_EQ(b.stretch_residual.size(), i % 3 == 0 ? 0U : 1U);
+    EXPECT_EQ(b.stretch_order, i % 3 == 0 ? 0 : static_cast<int>(i % 5));
+    const bool has_between = i % 3 > 0 && i % 4 > 0;
+    EXPECT_EQ(b.stretch_between, has_between ? static_cast<int>(i % 3) : 0);
+    EXPECT_EQ(parsed.gof.bones[1 - i % 2].stretch, Stretch::kNone);
   }
 }
 

@@ -44,7 +44,10 @@ std::uint32_t parse_rig_header(BitReader& r, const SequenceHeader& header,
   rig.num_component_groups = r.ue("num_component_groups", {0, kMaxComponentGroups}, "R-BON-02");
   rig.prediction = static_cast<Prediction>(r.u(2, "prediction_idc"));
   if (rig.prediction == Prediction::kLayers) parse_layers(r, header, num_layers, rig);
-  if (header.profile_idc >= kProfileHigh) rig.rest = parse_rest_settings(r, false);
+  if (header.profile_idc >= kProfileHigh) {
+    rig.stretch_flag = r.flag("stretch_flag");
+    rig.rest = parse_rest_settings(r, false);
+  }
   r.byte_alignment();
   return num_bones;
 }

@@ -7,6 +7,7 @@
 
 #include "common/parallel/for_each.h"
 #include "encoder/codec/kinds/skinned/fit/bone_estimate.h"
+#include "encoder/codec/kinds/skinned/fit/bone_stretch.h"
 #include "encoder/codec/kinds/skinned/fit/bone_tree.h"
 #include "encoder/codec/kinds/skinned/fit/skin_sums.h"
 #include "encoder/codec/kinds/skinned/fit/vertex_rings.h"
@@ -265,7 +266,9 @@ Point skinned_position(const Rig& rig, std::uint32_t frame, std::uint32_t vertex
     const RigPose& pose = bone.poses[frame];
     const Vec3d pivot{bone.pivot[0], bone.pivot[1], bone.pivot[2]};
     const Vec3d origin{pose.origin[0], pose.origin[1], pose.origin[2]};
-    sum += w.weight * (rotation_matrix(pose.rotation) * (rest - pivot) + origin);
+    const Eigen::Matrix3d axes =
+        bone.axes.empty() ? rotation_matrix(pose.rotation) : matrix_of(bone.axes[frame]);
+    sum += w.weight * (axes * (rest - pivot) + origin);
   }
   return {sum(0), sum(1), sum(2)};
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "encoder/codec/kinds/skinned/fit/bone_stretch.h"
 #include "encoder/codec/kinds/skinned/fit/rigid_motion.h"
 
 namespace rlpc {
@@ -36,6 +37,11 @@ std::vector<Load> loads(const Rig& rig) {
   return loads;
 }
 
+Eigen::Matrix3d axes_in(const RigBone& bone, std::size_t frame) {
+  return bone.axes.empty() ? rotation_matrix(bone.poses[frame].rotation)
+                           : matrix_of(bone.axes[frame]);
+}
+
 }  // namespace
 
 void fix_joints(double max_error, Rig& rig) {
@@ -46,16 +52,17 @@ void fix_joints(double max_error, Rig& rig) {
     double gap2 = 0.0;
     double turn2 = 0.0;
     for (std::size_t f = 0; f < bone.poses.size(); ++f) {
-      const Eigen::Matrix3d above = rotation_matrix(parent.poses[f].rotation);
+      const Eigen::Matrix3d above = axes_in(parent, f);
       const Vec3d expected =
           above * (vec(bone.pivot) - vec(parent.pivot)) + vec(parent.poses[f].origin);
       gap2 += (expected - vec(bone.poses[f].origin)).squaredNorm();
-      turn2 += (above - rotation_matrix(bone.poses[f].rotation)).squaredNorm();
+      turn2 += (above - axes_in(bone, f)).squaredNorm();
     }
     // A turn by a small angle displaces a point by angle * distance from the axis; the squared
     // norm of the difference of matrices is twice the squared angle.
     bone.pinned = load[b].mass * gap2 <= max_error;
-    bone.rotates = load[b].moment * turn2 / 3.0 > max_error;
+    const bool may_turn = bone.stretch != Stretch::kNone;  // its stretch is no turn
+    bone.rotates = may_turn || load[b].moment * turn2 / 3.0 > max_error;
   }
 }
 

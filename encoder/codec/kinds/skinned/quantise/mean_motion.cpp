@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "encoder/codec/kinds/skinned/fit/bone_stretch.h"
 #include "encoder/codec/kinds/skinned/fit/rigid_motion.h"
 #include "encoder/codec/math/det_math.h"
 
@@ -27,10 +28,12 @@ std::vector<MeanMotion> motions_of(const BoneMotion& bone, std::size_t first,
   return motions;
 }
 
-std::vector<MeanMotion> motions_of(const Vec3i& pivot, std::span<const WantedPose> poses) {
+std::vector<MeanMotion> motions_of(const Vec3i& pivot, std::span<const WantedPose> poses,
+                                   std::span<const AxisImages> axes) {
   std::vector<MeanMotion> motions(poses.size());
   for (std::size_t f = 0; f < poses.size(); ++f) {
-    const Eigen::Matrix3d turn = rotation_matrix(poses[f].rotation);
+    const Eigen::Matrix3d turn =
+        axes.empty() ? rotation_matrix(poses[f].rotation) : matrix_of(axes[f]);
     for (std::size_t c = 0; c < 3; ++c) {
       double moved = poses[f].origin[c];
       for (std::size_t k = 0; k < 3; ++k) {

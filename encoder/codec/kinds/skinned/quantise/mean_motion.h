@@ -26,8 +26,10 @@ struct MeanMotion {
 // Returns the motion of a decoded bone in some of its frames.
 std::vector<MeanMotion> motions_of(const BoneMotion& bone, std::size_t first,
                                    std::size_t count);
-// Returns the motion of a bone that is not quantised. pivot: 1/16 grid units.
-std::vector<MeanMotion> motions_of(const Vec3i& pivot, std::span<const WantedPose> poses);
+// Returns the motion of a bone that is not quantised. pivot: 1/16 grid units; poses: with
+// rotations in world coordinates; axes: as in RigBone.
+std::vector<MeanMotion> motions_of(const Vec3i& pivot, std::span<const WantedPose> poses,
+                                   std::span<const AxisImages> axes = {});
 
 using MotionsOfBones = std::vector<std::vector<MeanMotion>>;  // [bone][frame]
 

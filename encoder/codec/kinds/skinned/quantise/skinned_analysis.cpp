@@ -26,6 +26,7 @@ constexpr double kFinerLayer = 0.9;
 // Coarser layers have so few vertices that their errors barely count.
 constexpr double kFinestLayer = 0.4;
 constexpr std::size_t kVerticesTogether = 32;  // fixed: vertices of a pass
+constexpr double kMinMass = 1e-3;              // fixed: above zero
 
 std::uint32_t step_idx(double step) {
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(
@@ -102,6 +103,7 @@ class SkinnedAnalyser {
     if (before_ != nullptr && settings_.draft) {
       found_.gofs = before_->gofs;
       found_.bones = before_->bones;
+      rig.stretch_flag = before_->rig.stretch_flag;
       rig.bones = before_->rig.bones;
       rig.influences = before_->rig.influences;
     } else {
@@ -132,14 +134,26 @@ class SkinnedAnalyser {
   }
 
  private:
-  // Returns the sum of the squared weights of a bone, and of the squared weights times the
-  // squared distances from its pivot.
-  std::pair<double, double> mass_and_moment(std::size_t b) const {
+  // Returns which bones descend from a bone; it does so itself.
+  std::vector<bool> descendants(std::size_t b) const {
+    std::vector<bool> descends(rig_.bones.size());
+    descends[b] = true;
+    for (std::size_t k = b + 1; k < descends.size(); ++k) {
+      const std::int32_t parent = rig_.bones[k].parent;
+      descends[k] = parent >= 0 && descends[static_cast<std::size_t>(parent)];
+    }
+    return descends;
+  }
+
+  // Returns the sum of the squared weights of some bones, and of the squared weights times the
+  // squared distances from the pivot of bone b.
+  std::pair<double, double> mass_and_moment(std::size_t b,
+                                            const std::vector<bool>& bones) const {
     double mass = 0.0;
     double moment = 0.0;
     for (std::size_t v = 0; v < rig_.rest.size(); ++v) {
       for (const RigWeight& w : rig_.weights[v]) {
-        if (w.bone != b) continue;
+        if (!bones[w.bone]) continue;
         double square = 0.0;
         for (std::size_t c = 0; c < 3; ++c) {
           const double d = rig_.rest[v][c] - rig_.bones[b].pivot[c];
@@ -165,8 +179,9 @@ class SkinnedAnalyser {
       }
       bone.rotation_flag = from.rotates;
       bone.origin_flag = !from.pinned;
-      constexpr double kMinMass = 1e-3;  // fixed: above zero
-      const auto [mass, moment] = mass_and_moment(b);
+      std::vector<bool> only_b(rig_.bones.size());
+      only_b[b] = true;
+      const auto [mass, moment] = mass_and_moment(b, only_b);
       // A rotation with quaternion vector part x moves a point by 2 x r, r its distance from
       // the axis.
       const double turn_step =
@@ -174,6 +189,7 @@ class SkinnedAnalyser {
       bone.rotation_step_idx = step_idx(turn_step * exact_exp2(kQuaternionFractionBits));
       bone.origin_step_idx =
           step_idx(step_ / std::sqrt(std::max(mass, kMinMass)) * kPointScale);
+      if (from.stretch != Stretch::kNone) set_stretch(b, bone);
       std::vector<WantedPose> wanted(frames_.num_frames);
       for (std::size_t f = 0; f < wanted.size(); ++f) {
         wanted[f].rotation = from.poses[f].rotation;
@@ -181,10 +197,27 @@ class SkinnedAnalyser {
           wanted[f].origin[c] = from.poses[f].origin[c] * kPointScale;
         }
       }
-      bones.add(bone, wanted);
+      bones.add(bone, std::move(wanted), from.axes);
       found_.rig.bones.push_back(std::move(bone));
+      found_.rig.stretch_flag = found_.rig.stretch_flag || from.stretch != Stretch::kNone;
     }
     found_.bones = std::move(bones.motions());
+  }
+
+  void set_stretch(std::size_t b, Bone& bone) const {
+    const RigBone& from = rig_.bones[b];
+    bone.stretch = from.stretch;
+    constexpr double kUnit = 1 << (kStretchAxisBits - 1);  // fixed: format
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double part = from.stretch_turn[c + 1] / from.stretch_turn[0];
+      bone.stretch_axes[c] = static_cast<std::int32_t>(
+          std::clamp<std::int64_t>(round_to_int(part * kUnit), -32768, 32767));
+    }
+    // A factor moves a point by what it differs, times a third of the squared distance in the
+    // mean. Bones below take over the stretch, and its error.
+    const double moment = mass_and_moment(b, descendants(b)).second;
+    const double step = step_ / std::sqrt(std::max(moment / 3.0, kMinMass));
+    bone.stretch_step_idx = step_idx(step * exact_exp2(kStretchFractionBits));
   }
 
   // Returns the least-squares rest position for the decoded bones.

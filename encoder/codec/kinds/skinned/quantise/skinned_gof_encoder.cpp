@@ -213,6 +213,7 @@ void use_rig(std::shared_ptr<const SharedRig> rig, SkinnedGof& gof) {
   gof.weight_bits = rig->weight_bits;
   gof.prediction = rig->prediction;
   gof.weights = rig->weights;
+  gof.stretch_flag = rig->stretch_flag;
   gof.layer_group_size = rig->layer_group_size;
   gof.layer_step = rig->layer_step;
   gof.num_component_groups = rig->num_component_groups;

@@ -7,6 +7,7 @@
 #include "common/codec/kinds/skinned/recon/bones.h"
 #include "common/codec/kinds/skinned/skinned_gof.h"
 #include "encoder/codec/kinds/skinned/tracks/track_coding.h"
+#include "encoder/codec/spans/rig.h"
 #include "encoder/codec/spans/span_frames.h"
 
 namespace rlpc {
@@ -19,16 +20,20 @@ class SpanBones {
   // Keeps a reference to the GOFs, to which it adds bones.
   SpanBones(std::vector<SkinnedGof>& gofs, const TrackOptions& options);
 
-  // Codes the next bone, whose flags, pivot, parent and steps are given. wanted: [num_frames].
-  void add(const Bone& bone, std::span<const WantedPose> wanted);
+  // Codes the next bone, whose flags, pivot, parent and steps are given.
+  //
+  //   wanted  [num_frames]
+  //   axes    [num_frames]: what a stretched bone makes of the axes of the rest shape, from
+  //           which rotation and stretch follow; otherwise empty
+  void add(const Bone& bone, std::vector<WantedPose> wanted,
+           std::span<const AxisImages> axes = {});
   // Returns the motion of the bones so far, as decoded, in all frames of the span.
   std::vector<BoneMotion>& motions() { return motions_; }
 
  private:
   std::vector<SkinnedGof>& gofs_;
   TrackOptions options_;
-  std::vector<TrackState> rotations_;  // [GOF]
-  std::vector<TrackState> origins_;    // [GOF]
+  std::vector<BoneTrackStates> states_;  // [GOF]
   std::vector<BoneMotion> motions_;
 };
 

@@ -1,9 +1,11 @@
 #include "encoder/codec/kinds/skinned/reuse/pose_fit.h"
 
 #include <cstddef>
+#include <utility>
 
 #include "common/parallel/for_each.h"
 #include "encoder/codec/kinds/skinned/fit/bone_solver.h"
+#include "encoder/codec/kinds/skinned/fit/bone_stretch.h"
 #include "encoder/codec/kinds/skinned/quantise/mean_motion.h"
 #include "encoder/codec/math/det_math.h"
 
@@ -23,9 +25,13 @@ Vec3d centre_of(const SpanFrames& frames, std::uint32_t frame) {
 
 Vec3d point_of(const Vec3i& pivot) { return Vec3d(pivot[0], pivot[1], pivot[2]) / kPointScale; }
 
-// Returns the pose of a bone that moves like this.
-WantedPose pose_of(const Motion& motion, const Vec3d& pivot, const WantedPose* before) {
-  WantedPose pose{rotation_quaternion(motion.leftCols<3>()), {}};
+// Returns the pose of a bone that moves like this; of a stretched one, with the rotation that
+// is nearest.
+WantedPose pose_of(const Motion& motion, bool is_stretched, const Vec3d& pivot,
+                   const WantedPose* before) {
+  const Eigen::Matrix3d turn = motion.leftCols<3>();
+  WantedPose pose;
+  pose.rotation = is_stretched ? nearest_rotation(turn) : rotation_quaternion(turn);
   const Vec3d origin = moved(motion, pivot);
   for (std::size_t c = 0; c < 3; ++c) {
     pose.origin[c] = origin(static_cast<Eigen::Index>(c)) * kPointScale;
@@ -62,6 +68,54 @@ PoseFit::PoseFit(const SharedRig& rig, const std::array<std::vector<std::int32_t
   }
   for (const Bone& bone : rig.bones) {
     is_free_ = is_free_ && bone.rotation_flag && bone.origin_flag;
+    const bool parent_is =
+        bone.parent >= 0 && is_stretched_[static_cast<std::size_t>(bone.parent)];
+    is_stretched_.push_back(bone.stretch != Stretch::kNone || parent_is);
+  }
+  if (rig.stretch_flag) make_linear_system();
+}
+
+void PoseFit::make_linear_system() {
+  constexpr std::size_t kMaxBones = 256;  // fixed: 8 MB
+  constexpr double kDamping = 1e-6;       // fixed: decides only what vertices do not
+  const std::size_t n = rig_.bones.size();
+  if (n > kMaxBones) return;
+  const std::size_t size = 4 * n;
+  std::vector<double> a(size * size);
+  double mean = 0.0;
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t k = 0; k < size; ++k) {
+      a[i * size + k] = moments_.block(i / 4, k / 4)(static_cast<Eigen::Index>(i % 4),
+                                                     static_cast<Eigen::Index>(k % 4));
+    }
+    mean += a[i * size + i] / static_cast<double>(size);
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    damping_.push_back(kDamping * (a[i * size + i] + kDamping * mean));
+    a[i * size + i] += damping_.back();
+  }
+  linear_.emplace(std::move(a), size);
+}
+
+// Replaces the motions of stretched bones by the linear maps that fit best, with all bones
+// free.
+void PoseFit::fit_linear_maps(std::span<const Motion> targets, Motions& motions) const {
+  if (!linear_) return;
+  std::vector<double> x(3 * damping_.size());
+  for (std::size_t i = 0; i < damping_.size(); ++i) {
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const auto k = static_cast<Eigen::Index>(i % 4);
+      x[3 * i + static_cast<std::size_t>(c)] =
+          targets[i / 4](c, k) + damping_[i] * motions[i / 4](c, k);
+    }
+  }
+  linear_->solve(x, 3);
+  for (std::size_t i = 0; i < damping_.size(); ++i) {
+    if (!is_stretched_[i / 4]) continue;
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      motions[i / 4](c, static_cast<Eigen::Index>(i % 4)) =
+          x[3 * i + static_cast<std::size_t>(c)];
+    }
   }
 }
 
@@ -145,27 +199,30 @@ void PoseFit::fit_some(const SpanFrames& frames, std::span<const std::uint32_t> 
     fit_poses(moments_, wanted, now);
     motions[i] = now;
     for (int k = 0; k < kRounds && !is_free_; ++k) keep_joints(wanted, centres[i], motions[i]);
+    fit_linear_maps(wanted, motions[i]);
     for (Motion& m : motions[i]) m.col(3) += centres[i] - m.leftCols<3>() * rest_centre_;
   }
 }
 
-std::vector<std::vector<WantedPose>> PoseFit::fit(const SpanFrames& frames,
-                                                  std::span<const std::uint32_t> chosen) const {
+std::vector<FittedPoses> PoseFit::fit(const SpanFrames& frames,
+                                      std::span<const std::uint32_t> chosen) const {
   constexpr std::size_t kTogether = 16;  // fixed: frames of a pass
   std::vector<Motions> motions(chosen.size());
   for_ranges(chosen.size(), kTogether, [&](std::size_t first, std::size_t end) {
     fit_some(frames, chosen.subspan(first, end - first),
              std::span(motions).subspan(first, end - first));
   });
-  std::vector<std::vector<WantedPose>> poses(rig_.bones.size());
-  for (std::size_t b = 0; b < poses.size(); ++b) {
+  std::vector<FittedPoses> fitted(rig_.bones.size());
+  for (std::size_t b = 0; b < fitted.size(); ++b) {
     const Vec3d pivot = point_of(rig_.bones[b].pivot);
+    auto& [poses, axes] = fitted[b];
     for (const Motions& frame_motions : motions) {
-      poses[b].push_back(
-          pose_of(frame_motions[b], pivot, poses[b].empty() ? nullptr : &poses[b].back()));
+      poses.push_back(pose_of(frame_motions[b], is_stretched_[b], pivot,
+                              poses.empty() ? nullptr : &poses.back()));
+      if (is_stretched_[b]) axes.push_back(images_of(frame_motions[b].leftCols<3>()));
     }
   }
-  return poses;
+  return fitted;
 }
 
 }  // namespace rlpc

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "encoder/codec/kinds/skinned/fit/bone_stretch.h"
 #include "encoder/codec/kinds/skinned/quantise/mean_motion.h"
 
 namespace rlpc {
@@ -54,11 +56,12 @@ struct Arm {
     return list;
   }
 
-  SpanFrames moved(const std::vector<std::vector<WantedPose>>& poses) const {
+  SpanFrames moved(const std::vector<std::vector<WantedPose>>& poses,
+                   const std::vector<std::vector<AxisImages>>& axes = {{}, {}}) const {
     SpanFrames frames{kVertices, static_cast<std::uint32_t>(poses[0].size()), {}, 0, 1, false};
     MotionsOfBones motions;
     for (std::size_t b = 0; b < 2; ++b) {
-      motions.push_back(motions_of(rig.bones[b].pivot, poses[b]));
+      motions.push_back(motions_of(rig.bones[b].pivot, poses[b], axes[b]));
     }
     frames.xyz.resize(std::size_t{3} * kVertices * frames.num_frames);
     MeanMotions means(motions);
@@ -78,6 +81,16 @@ struct Arm {
   SharedRig rig;
   std::array<std::vector<std::int32_t>, 3> rest;
 };
+
+std::vector<std::vector<WantedPose>> fitted(const Arm& arm, const SpanFrames& frames) {
+  std::vector<std::vector<WantedPose>> poses;
+  for (FittedPoses& bone :
+       PoseFit(arm.rig, arm.rest).fit(frames, numbers_from(0, frames.num_frames))) {
+    EXPECT_TRUE(bone.axes.empty());
+    poses.push_back(std::move(bone.poses));
+  }
+  return poses;
+}
 
 void expect_near(const std::vector<std::vector<WantedPose>>& found,
                  const std::vector<std::vector<WantedPose>>& wanted, double tolerance) {
@@ -100,18 +113,46 @@ TEST(PoseFit, FindsThePosesOfAllBones) {
   const auto wanted = arm.poses(20, 700.0);
   const SpanFrames frames = arm.moved(wanted);
   const PoseFit fit(arm.rig, arm.rest);
-  const auto found = fit.fit(frames, numbers_from(0, 20));
-  expect_near(found, wanted, 16.0);
+  expect_near(fitted(arm, frames), wanted, 16.0);
   // A single frame starts from scratch.
   const std::uint32_t last = 19;
-  EXPECT_NEAR(fit.fit(frames, std::span(&last, 1))[1][0].origin[0], wanted[1][19].origin[0],
-              16.0);
+  EXPECT_NEAR(fit.fit(frames, std::span(&last, 1))[1].poses[0].origin[0],
+              wanted[1][19].origin[0], 16.0);
+}
+
+// The root shrinks along x, and the child with it; vertices between them follow both.
+TEST(PoseFit, FindsStretches) {
+  Arm arm;
+  arm.rig.stretch_flag = true;
+  arm.rig.bones[0].stretch = Stretch::kRestAxes;
+  const auto poses = arm.poses(20, 700.0);
+  std::vector<std::vector<AxisImages>> wanted(2);
+  for (std::uint32_t f = 0; f < 20; ++f) {
+    const double factor = 0.8 + 0.2 * std::cos(0.4 * f);
+    for (std::size_t b = 0; b < 2; ++b) {
+      Eigen::Matrix3d axes = rotation_matrix(poses[b][f].rotation);
+      axes.col(0) *= factor;
+      wanted[b].push_back(images_of(axes));
+    }
+  }
+  const SpanFrames frames = arm.moved(poses, wanted);
+  const auto found = PoseFit(arm.rig, arm.rest).fit(frames, numbers_from(0, 20));
+  for (std::size_t b = 0; b < 2; ++b) {
+    ASSERT_EQ(found[b].axes.size(), 20U);
+    for (std::size_t f = 0; f < 20; ++f) {
+      const double gap = (matrix_of(found[b].axes[f]) - matrix_of(wanted[b][f])).norm();
+      EXPECT_LT(gap, 1e-3) << b << ' ' << f;
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(found[b].poses[f].origin[c], poses[b][f].origin[c], 16.0) << b << ' ' << f;
+      }
+    }
+  }
 }
 
 TEST(PoseFit, QuaternionsKeepTheirSign) {
   const Arm arm;
   const SpanFrames frames = arm.moved(arm.poses(20, 0.0));
-  for (const auto& bone_motions : PoseFit(arm.rig, arm.rest).fit(frames, numbers_from(0, 20))) {
+  for (const auto& bone_motions : fitted(arm, frames)) {
     for (std::size_t f = 1; f < bone_motions.size(); ++f) {
       double same = 0.0;
       for (std::size_t k = 0; k < 4; ++k) {
@@ -126,11 +167,10 @@ TEST(PoseFit, PinnedBonesKeepTheirJoint) {
   Arm arm;
   arm.rig.bones[1].origin_flag = false;
   const auto wanted = arm.poses(20, 0.0);
-  expect_near(PoseFit(arm.rig, arm.rest).fit(arm.moved(wanted), numbers_from(0, 20)), wanted,
-              16.0);
+  expect_near(fitted(arm, arm.moved(wanted)), wanted, 16.0);
   // Where the joint opens, the child still begins where the parent ends.
   const SpanFrames open = arm.moved(arm.poses(20, 900.0));
-  const auto found = PoseFit(arm.rig, arm.rest).fit(open, numbers_from(0, 20));
+  const auto found = fitted(arm, open);
   const auto motions = motions_of(arm.rig.bones[0].pivot, found[0]);
   for (std::size_t f = 0; f < 20; ++f) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -144,7 +184,7 @@ TEST(PoseFit, BonesThatDoNotRotateMoveAlong) {
   Arm arm;
   arm.rig.bones[0].rotation_flag = false;
   const auto wanted = arm.poses(20, 0.0);
-  const auto found = PoseFit(arm.rig, arm.rest).fit(arm.moved(wanted), numbers_from(0, 20));
+  const auto found = fitted(arm, arm.moved(wanted));
   expect_near(found, wanted, 16.0);
   for (const WantedPose& pose : found[0]) EXPECT_NEAR(pose.rotation[0], 1.0, 1e-12);
 }

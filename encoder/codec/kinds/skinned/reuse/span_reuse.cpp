@@ -88,14 +88,13 @@ double SpanReuse::expected_cost() const {
     chosen.push_back(static_cast<std::uint32_t>(
         (2 * std::uint64_t{i} + 1) * frames_.num_frames / (2 * std::uint64_t{count})));
   }
-  std::vector<std::vector<WantedPose>> poses(rig_.bones.size());
+  MotionsOfBones motions(rig_.bones.size());
   for (const std::uint32_t f : chosen) {
-    const auto frame_motions = poses_.fit(frames_, std::span(&f, 1));
-    for (std::size_t b = 0; b < poses.size(); ++b) poses[b].push_back(frame_motions[b].front());
-  }
-  MotionsOfBones motions;
-  for (std::size_t b = 0; b < poses.size(); ++b) {
-    motions.push_back(motions_of(rig_.bones[b].pivot, poses[b]));
+    const auto fitted = poses_.fit(frames_, std::span(&f, 1));
+    for (std::size_t b = 0; b < motions.size(); ++b) {
+      motions[b].push_back(
+          motions_of(rig_.bones[b].pivot, fitted[b].poses, fitted[b].axes).front());
+    }
   }
   RigRemainder left(kept_, factors_, frames_, chosen, std::move(motions));
   left.set_temporal(factors_.fit(left.rows()));
@@ -121,8 +120,10 @@ double SpanReuse::expected_cost() const {
 void SpanReuse::code_bones() {
   gofs_ = gofs_of_span(frames_, settings_.track_levels);
   SpanBones bones(gofs_, track_options(settings_));
-  const auto poses = poses_.fit(frames_, numbers_from(0, frames_.num_frames));
-  for (std::size_t b = 0; b < poses.size(); ++b) bones.add(rig_.bones[b], poses[b]);
+  auto fitted = poses_.fit(frames_, numbers_from(0, frames_.num_frames));
+  for (std::size_t b = 0; b < fitted.size(); ++b) {
+    bones.add(rig_.bones[b], std::move(fitted[b].poses), fitted[b].axes);
+  }
   bones_ = std::move(bones.motions());
 }
 

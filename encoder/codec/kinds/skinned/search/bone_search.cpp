@@ -227,13 +227,15 @@ SkinnedTrial BoneSearch::try_requested(const SkinnedTrials& trials) {
 
 // Finds the rig of the input or, if there is none, recovers one from the frames. Returns
 // whether there is any.
-bool BoneSearch::find_given_rig() {
+bool BoneSearch::find_given_rig(double step) {
   constexpr double kCertain = 0.99;  // fixed: of the vertices; fitted bones are no rivals then
   if (is_given_rig_known_) return given_rig_ != nullptr;
   is_given_rig_known_ = true;
   const EncoderSettings& settings = context_.settings;
   if (settings.main.bones != 0) return false;
   given_rig_ = frames_.input_rig;
+  if (given_rig_ && frames_.rigid_rig)
+    given_rig_ = better_rig(given_rig_, frames_.rigid_rig, step);
   is_given_rig_certain_ = given_rig_ != nullptr;
   const bool recovers =
       !given_rig_ && settings.preset != Preset::kFast && settings.main.influences == 0;
@@ -245,8 +247,21 @@ bool BoneSearch::find_given_rig() {
   return given_rig_ != nullptr;
 }
 
-SkinnedCandidate BoneSearch::given_rig(double step) const {
-  Rig rig = *given_rig_;
+// Returns the rig that takes fewer bits at equal error: stretches may not be worth theirs.
+std::shared_ptr<const Rig> BoneSearch::better_rig(std::shared_ptr<const Rig> first,
+                                                  std::shared_ptr<const Rig> second,
+                                                  double step) const {
+  const SkinnedTrials trials(context_, frames_, step);
+  std::array<double, 2> bits{};
+  for_each(2, [&](std::size_t i) {
+    const SkinnedTrial draft = trials.run(given_rig(i == 0 ? *first : *second, step));
+    bits[i] = bits_at_equal_error(draft.bits, draft.error);
+  });
+  return bits[1] < bits[0] ? second : first;
+}
+
+SkinnedCandidate BoneSearch::given_rig(const Rig& given, double step) const {
+  Rig rig = given;
   const double worth =
       lambda(step) * expected_bone_bits(unsteadiness(frames_), frames_, rig.bones.size(), step);
   fix_joints(0.5 * worth, rig);  // saves three of six values per pose
@@ -261,13 +276,13 @@ bool BoneSearch::follows_given_rig(double step) {
   if (follows_given_rig_) return *follows_given_rig_;
   const bool is_tiny = context_.settings.preset != Preset::kFast &&
                        std::uint64_t{frames_.num_vertices} * frames_.num_frames <= kTiny;
-  if (is_tiny || !find_given_rig() || !is_given_rig_certain_)
+  if (is_tiny || !find_given_rig(step) || !is_given_rig_certain_)
     return follows_given_rig_.emplace(false);
   start_all();
   const SkinnedTrials trials(context_, frames_, step);
   std::array<BestTrial, 2> drafts;
   for_each(2, [&](std::size_t i) {
-    drafts[i] = trials.run(i == 0 ? one_bone(step) : given_rig(step));
+    drafts[i] = trials.run(i == 0 ? one_bone(step) : given_rig(*given_rig_, step));
   });
   return follows_given_rig_.emplace(is_clearly_better(*drafts[1], *drafts[0]));
 }
@@ -323,7 +338,7 @@ SkinnedCandidate BoneSearch::likeliest(double step) {
   // this fraction of a single one, of which the expected cost is too high: it leaves out what
   // adaptive weights predict.
   constexpr double kWithoutTrial = 0.55;
-  if (follows_given_rig(step)) return given_rig(step);
+  if (follows_given_rig(step)) return given_rig(*given_rig_, step);
   grow_all(step);
   const std::vector<Candidate> list = candidates(step);
   const bool fast = context_.settings.preset == Preset::kFast;
@@ -390,7 +405,7 @@ SkinnedTrial BoneSearch::search(const SkinnedTrials& trials,
   if (context_.settings.main.bones > 0) return try_requested(trials);
   if (follows_given_rig(trials.step())) {
     BestTrial one = try_one_bone(trials);
-    BestTrial many = trials.run(given_rig(trials.step()));
+    BestTrial many = trials.run(given_rig(*given_rig_, trials.step()));
     progress_(kCompared);
     std::array<BestTrial, 2> both{std::move(one), std::move(many)};
     return std::move(*both[best_of(both, trials, wanted_error)]);
@@ -398,7 +413,9 @@ SkinnedTrial BoneSearch::search(const SkinnedTrials& trials,
   grow_all(trials.step());
   std::vector<BestTrial> drafts;
   drafts.emplace_back(try_one_bone(trials));
-  if (find_given_rig()) drafts.emplace_back(trials.run(given_rig(trials.step())));
+  if (find_given_rig(trials.step())) {
+    drafts.emplace_back(trials.run(given_rig(*given_rig_, trials.step())));
+  }
   const std::size_t num_given = drafts.size();  // not fitted
   const std::vector<Candidate> list = candidates(trials.step());
   drafts.resize(num_given + list.size());

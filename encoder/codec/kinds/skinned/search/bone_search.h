@@ -79,8 +79,10 @@ class BoneSearch {
   SkinnedCandidate candidate(Growth& growth, Growth::Bones& bones, double step) const;
   SkinnedTrial try_one_bone(const SkinnedTrials& trials);
   SkinnedTrial try_requested(const SkinnedTrials& trials);
-  bool find_given_rig();
-  SkinnedCandidate given_rig(double step) const;
+  bool find_given_rig(double step);
+  std::shared_ptr<const Rig> better_rig(std::shared_ptr<const Rig> first,
+                                        std::shared_ptr<const Rig> second, double step) const;
+  SkinnedCandidate given_rig(const Rig& given, double step) const;
   bool follows_given_rig(double step);
   std::vector<Candidate> candidates(double step);
   bool is_better(const SkinnedTrial& second, const SkinnedTrial& first,

@@ -29,6 +29,7 @@ SkinnedGof without_layers(SkinnedGof gof, int layers) {
   for (Bone& bone : gof.bones) {
     drop(gof, layers, bone.rotation_between, bone.rotation_residual);
     drop(gof, layers, bone.origin_between, bone.origin_residual);
+    drop(gof, layers, bone.stretch_between, bone.stretch_residual);
   }
   for (Trajectory& trajectory : gof.trajectories) {
     drop(gof, layers, trajectory.temporal_between, trajectory.residual);

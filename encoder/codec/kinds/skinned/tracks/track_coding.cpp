@@ -303,13 +303,17 @@ CodedTrack<typename Series::Value> code_best(Wanted wanted, std::span<const Way<
   return std::move(chosen.coded);
 }
 
+bool is_stretched(const Bone& bone, const BoneMotion* parent) {
+  return bone.stretch != Stretch::kNone || (parent != nullptr && parent->is_stretched);
+}
+
 std::vector<Quaternion> code_rotations(std::span<const WantedPose> wanted,
                                        const BoneMotion* parent, const TrackOptions& options,
                                        TrackState& state, Bone& bone) {
   std::vector<QuaternionD> relative(wanted.size());
   for (std::size_t f = 0; f < wanted.size(); ++f) {
     relative[f] = wanted[f].rotation;
-    if (parent == nullptr) continue;
+    if (parent == nullptr || is_stretched(bone, parent)) continue;
     relative[f] = product(inverse(parent->poses[f].rotation), relative[f]);
   }
   std::vector<Way<Bone>> ways;
@@ -327,7 +331,26 @@ std::vector<Quaternion> code_rotations(std::span<const WantedPose> wanted,
   return std::move(coded.values[0]);
 }
 
-std::vector<Vec3l> code_offsets(std::span<const WantedPose> wanted, const BoneMotion* parent,
+// Codes a track of offsets; sets how it is coded. Returns the values as decoded.
+std::vector<Vec3l> code_offsets(Values offsets, const TrackOptions& options, TrackState& state,
+                                OffsetHeader& header, TrackResiduals& residuals) {
+  std::vector<Way<OffsetHeader>> ways;
+  for (int between = min_between(options); between <= max_between(options); ++between) {
+    for (int order = 0; order <= kMaxPredictorOrder; ++order) {
+      ways.push_back({{header.step_idx, order, between}, between, 0.0});
+    }
+  }
+  auto coded = code_best<OffsetSeries>(offsets, std::span<const Way<OffsetHeader>>(ways),
+                                       options, state, header);
+  residuals = std::move(coded.residuals);
+  std::vector<Vec3l> decoded(offsets.size());
+  for (std::size_t f = 0; f < decoded.size(); ++f) {
+    for (std::size_t c = 0; c < 3; ++c) decoded[f][c] = coded.values[c][f];
+  }
+  return decoded;
+}
+
+std::vector<Vec3l> code_origins(std::span<const WantedPose> wanted, const BoneMotion* parent,
                                 const TrackOptions& options, TrackState& state, Bone& bone) {
   std::vector<std::array<double, 3>> offsets(wanted.size());
   for (std::uint32_t f = 0; f < wanted.size(); ++f) {
@@ -336,21 +359,25 @@ std::vector<Vec3l> code_offsets(std::span<const WantedPose> wanted, const BoneMo
       offsets[f][c] = wanted[f].origin[c] - static_cast<double>(carried[c]);
     }
   }
-  std::vector<Way<Bone>> ways;
-  for (int between = min_between(options); between <= max_between(options); ++between) {
-    for (int order = 0; order <= kMaxPredictorOrder; ++order) {
-      Way<Bone>& way = ways.emplace_back(Way<Bone>{bone, between, 0.0});
-      way.header.origin_order = order;
-      way.header.origin_between = between;
-    }
+  OffsetHeader header{bone.origin_step_idx};
+  auto decoded = code_offsets(offsets, options, state, header, bone.origin_residual);
+  bone.origin_order = header.order;
+  bone.origin_between = header.between;
+  return decoded;
+}
+
+std::vector<Vec3l> code_stretches(std::span<const WantedPose> wanted,
+                                  const TrackOptions& options, TrackState& state, Bone& bone) {
+  const double one = exact_exp2(kStretchFractionBits);
+  std::vector<std::array<double, 3>> differences(wanted.size());
+  for (std::size_t f = 0; f < wanted.size(); ++f) {
+    const auto& [first, second, third] = wanted[f].stretch;
+    differences[f] = {one * (first - 1.0), one * (second - first), one * (third - first)};
   }
-  auto coded = code_best<OffsetSeries>(Values(offsets), std::span<const Way<Bone>>(ways),
-                                       options, state, bone);
-  bone.origin_residual = std::move(coded.residuals);
-  std::vector<Vec3l> decoded(wanted.size());
-  for (std::size_t f = 0; f < decoded.size(); ++f) {
-    for (std::size_t c = 0; c < 3; ++c) decoded[f][c] = coded.values[c][f];
-  }
+  OffsetHeader header{bone.stretch_step_idx};
+  auto decoded = code_offsets(differences, options, state, header, bone.stretch_residual);
+  bone.stretch_order = header.order;
+  bone.stretch_between = header.between;
   return decoded;
 }
 
@@ -386,23 +413,25 @@ TrackCost code_trajectory(std::span<const std::array<double, 3>> values, double 
 }
 
 BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent,
-                     const TrackOptions& options, TrackState& rotations, TrackState& origins,
-                     Bone& bone) {
-  std::vector<Quaternion> relative(wanted.size(), kNoRotation);
-  std::vector<Vec3l> offset(wanted.size());
+                     const TrackOptions& options, BoneTrackStates& states, Bone& bone) {
+  RelativeMotion relative{std::vector<Quaternion>(wanted.size(), kNoRotation),
+                          std::vector<Vec3l>(wanted.size()), std::vector<Vec3l>(wanted.size())};
   Bone shifted = bone;
   for_each(2, [&](std::size_t i) {
     if (i == 0 && bone.rotation_flag) {
-      relative = code_rotations(wanted, parent, options, rotations, bone);
+      relative.rotations = code_rotations(wanted, parent, options, states.rotations, bone);
     }
     if (i == 1 && shifted.origin_flag) {
-      offset = code_offsets(wanted, parent, options, origins, shifted);
+      relative.offsets = code_origins(wanted, parent, options, states.origins, shifted);
     }
   });
   bone.origin_order = shifted.origin_order;
   bone.origin_between = shifted.origin_between;
   bone.origin_residual = std::move(shifted.origin_residual);
-  return move_bone(bone, parent, relative, offset);
+  if (bone.stretch != Stretch::kNone) {
+    relative.stretches = code_stretches(wanted, options, states.stretches, bone);
+  }
+  return move_bone(bone, parent, relative);
 }
 
 }  // namespace rlpc

@@ -30,16 +30,27 @@ TrackCost code_trajectory(std::span<const std::array<double, 3>> values, double 
                           const TrackOptions& options, TrackState& state,
                           Trajectory& trajectory);
 
-// The pose of a bone in a frame before quantisation, in world coordinates and 1/16 grid units.
+// The pose of a bone in a frame before quantisation.
 struct WantedPose {
-  std::array<double, 4> rotation{1.0, 0.0, 0.0, 0.0};  // w, x, y, z; of unit length
-  std::array<double, 3> origin{};                      // position of the pivot
+  // w, x, y, z; of unit length. In world coordinates or, of a stretched bone, relative to its
+  // parent.
+  std::array<double, 4> rotation{1.0, 0.0, 0.0, 0.0};
+  std::array<double, 3> origin{};  // position of the pivot in the world, 1/16 grid units
+  std::array<double, 3> stretch{1.0, 1.0, 1.0};  // its own, along its axes
+};
+
+// States of the tracks of bones.
+struct BoneTrackStates {
+  explicit BoneTrackStates(std::uint32_t num_frames)
+      : rotations(num_frames), origins(num_frames), stretches(num_frames) {}
+  TrackState rotations;
+  TrackState origins;
+  TrackState stretches;
 };
 
 // Codes a bone whose flags, pivot, parent and steps are given: sets orders and residuals,
 // advances the states, and returns the motion that a decoder recovers.
 BoneMotion code_bone(std::span<const WantedPose> wanted, const BoneMotion* parent,
-                     const TrackOptions& options, TrackState& rotations, TrackState& origins,
-                     Bone& bone);
+                     const TrackOptions& options, BoneTrackStates& states, Bone& bone);
 
 }  // namespace rlpc

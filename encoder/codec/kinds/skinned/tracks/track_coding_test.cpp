@@ -242,8 +242,7 @@ void expect_equal(const BoneMotion& a, const BoneMotion& b) {
 }
 
 TEST(CodedBones, FollowTheWantedPoses) {
-  TrackState rotations(kFrames);
-  TrackState origins(kFrames);
+  BoneTrackStates states(kFrames);
   std::vector<Bone> bones;
   std::vector<BoneMotion> motions;
   motions.reserve(3);
@@ -252,7 +251,7 @@ TEST(CodedBones, FollowTheWantedPoses) {
     Bone bone = free_bone();
     bone.parent = b - 1;
     motions.push_back(code_bone(wanted, b == 0 ? nullptr : &motions.back(), {.track_levels = 1},
-                                rotations, origins, bone));
+                                states, bone));
     bones.push_back(bone);
     expect_close(wanted, motions.back());
   }
@@ -266,17 +265,15 @@ TEST(CodedBones, IgnoreTheSignOfQuaternions) {
   for (std::size_t f = 0; f < wanted.size(); f += 3) {
     for (double& x : wanted[f].rotation) x = -x;
   }
-  TrackState rotations(kFrames);
-  TrackState origins(kFrames);
+  BoneTrackStates states(kFrames);
   Bone bone = free_bone();
-  expect_close(wanted, code_bone(wanted, nullptr, {}, rotations, origins, bone));
+  expect_close(wanted, code_bone(wanted, nullptr, {}, states, bone));
 }
 
 TEST(CodedBones, CostLittleInSteadyMotion) {
-  TrackState rotations(kFrames);
-  TrackState origins(kFrames);
+  BoneTrackStates states(kFrames);
   Bone bone = free_bone();
-  code_bone(steady_poses(0.05), nullptr, {}, rotations, origins, bone);
+  code_bone(steady_poses(0.05), nullptr, {}, states, bone);
   EXPECT_GE(bone.origin_order, 2);
   EXPECT_GE(bone.rotation_order, 2);
   EXPECT_LT(bytes_of(bone.origin_residual), 35U);
@@ -284,17 +281,55 @@ TEST(CodedBones, CostLittleInSteadyMotion) {
 }
 
 TEST(CodedBones, HaveNoResidualsWithoutFlags) {
-  TrackState rotations(kFrames);
-  TrackState origins(kFrames);
+  BoneTrackStates states(kFrames);
   Bone bone;
   bone.pivot = {7, 8, 9};
-  const BoneMotion motion = code_bone(steady_poses(0.1), nullptr, {}, rotations, origins, bone);
+  const BoneMotion motion = code_bone(steady_poses(0.1), nullptr, {}, states, bone);
   EXPECT_TRUE(bone.rotation_residual.empty());
   EXPECT_TRUE(bone.origin_residual.empty());
   for (const BonePose& pose : motion.poses) {
     EXPECT_EQ(pose.rotation, kNoRotation);
     EXPECT_EQ(pose.origin, (Vec3l{7, 8, 9}));
   }
+}
+
+// The root shrinks by half and back, along axes of its own; the child takes that over.
+TEST(CodedBones, FollowTheWantedStretch) {
+  BoneTrackStates states(kFrames);
+  std::vector<WantedPose> wanted = steady_poses(0.05);
+  for (std::uint32_t f = 0; f < kFrames; ++f) {
+    const double factor = 0.75 + 0.25 * std::cos(0.2 * f);
+    wanted[f].stretch = {factor, factor, 1.5 - 0.5 * factor};
+  }
+  Bone root = free_bone();
+  root.stretch = Stretch::kOwnAxes;
+  root.stretch_axes = {3000, -9000, 12000};
+  root.stretch_step_idx = 8 * 14;  // 2^-14
+  const BoneMotion motion = code_bone(wanted, nullptr, {.track_levels = 1}, states, root);
+  EXPECT_TRUE(motion.is_stretched);
+  EXPECT_LT(bytes_of(root.stretch_residual), 100U);
+  const BoneAxes along = stretch_axes(root);
+  for (std::uint32_t f = 0; f < kFrames; ++f) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::array<double, 3> image{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          image[c] += static_cast<double>(motion.poses[f].axes[k][c]) *
+                      static_cast<double>(along[i][k]) * std::exp2(-60);
+        }
+      }
+      // Larger than the rest shape it does not become.
+      const double limit = std::min(wanted[f].stretch[i], 1.0);
+      const double length = std::hypot(image[0], image[1], image[2]);
+      EXPECT_NEAR(length, wanted[f].stretch[i] > 1.0 ? length : limit, 3e-4) << f << ' ' << i;
+    }
+  }
+  Bone child = free_bone();
+  child.parent = 0;
+  const std::vector<BoneMotion> decoded = recon_bones(std::vector<Bone>{root}, kFrames, 1);
+  expect_equal(decoded[0], motion);
+  const BoneMotion below = code_bone(steady_poses(0.1), &motion, {}, states, child);
+  EXPECT_TRUE(below.is_stretched);
 }
 
 }  // namespace

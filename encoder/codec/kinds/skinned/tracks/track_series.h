@@ -52,7 +52,13 @@ class TrajectorySeries {
   const Trajectory& trajectory_;
 };
 
-// The offsets of the origin of a bone.
+// How a track of offsets is coded: those of the origin of a bone, or what its stretches differ.
+struct OffsetHeader {
+  std::uint32_t step_idx = 0;
+  int order = 0;
+  int between = 0;
+};
+
 class OffsetSeries {
  public:
   static constexpr bool kCoupled = false;
@@ -60,8 +66,8 @@ class OffsetSeries {
   using Predicted = TrajectorySeries::Predicted;
 
   // wanted: [num_frames], in the unit of the offsets.
-  OffsetSeries(std::span<const std::array<double, 3>> wanted, const Bone& bone)
-      : wanted_(wanted), order_(bone.origin_order), step_(step_of(bone.origin_step_idx)) {}
+  OffsetSeries(std::span<const std::array<double, 3>> wanted, const OffsetHeader& header)
+      : wanted_(wanted), order_(header.order), step_(step_of(header.step_idx)) {}
 
   template <class Known>
   Predicted predict(const Known& known, const TrackPlace& at, std::size_t c) const {
