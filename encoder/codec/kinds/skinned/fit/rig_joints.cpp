@@ -61,8 +61,9 @@ void fix_joints(double max_error, Rig& rig) {
     // A turn by a small angle displaces a point by angle * distance from the axis; the squared
     // norm of the difference of matrices is twice the squared angle.
     bone.pinned = load[b].mass * gap2 <= max_error;
-    const bool may_turn = bone.stretch != Stretch::kNone;  // its stretch is no turn
-    bone.rotates = may_turn || load[b].moment * turn2 / 3.0 > max_error;
+    // Axes of a bone that stretches differ from those of its parent without a turn as well.
+    const bool stretches = bone.stretch != Stretch::kNone;
+    bone.rotates = stretches || load[b].moment * turn2 / 3.0 > max_error;
   }
 }
 
