@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "common/codec/mesh/topology.h"
 #include "common/memory/owned.h"
 #include "common/parallel/for_each.h"
 
@@ -79,8 +80,7 @@ class NearSearch {
     std::erase_if(vertices_, [&](std::uint32_t u) {
       return std::find(ring.begin(), ring.end(), u) != ring.end();
     });
-    std::sort(vertices_.begin(), vertices_.end());
-    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    sort_without_repetitions(vertices_);
   }
 
   // AddBaseVertices( v ): returns those before a vertex of the base, or around another vertex.

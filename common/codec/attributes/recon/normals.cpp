@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/codec/mesh/topology.h"
 #include "common/memory/owned.h"
 
 namespace rlpc {
@@ -83,8 +84,7 @@ Vec3l sector_normal(const CornerGeometry& geometry, const FaceView& faces,
   Vector<std::uint32_t> once;
   once.reserve(corners.size());
   for (const std::uint32_t c : corners) once.push_back(faces.face_of[c / 3]);
-  std::sort(once.begin(), once.end());
-  once.erase(std::unique(once.begin(), once.end()), once.end());
+  sort_without_repetitions(once);
   for (const std::uint32_t f : once) {
     if (weight == SmoothingWeight::kArea) {
       add(faces.normals[f], 1, area_shift);
