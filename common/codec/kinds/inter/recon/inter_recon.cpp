@@ -163,14 +163,11 @@ void InterRecon::positions(std::span<std::int32_t> positions) const {
   }
 }
 
-void InterRecon::skip_to(std::uint32_t place) {
-  if (!weights_) start_motion();  // from the first frame, the last one decoded
-  now_.number = place;
-}
+void InterRecon::skip_to(std::uint32_t place) { now_.number = place; }
 
 void InterRecon::start_frame(const FramePlace& place, std::uint32_t last_use,
                              std::int32_t step_delta) {
-  if (now_.number == 1 && !weights_) start_motion();
+  if (now_.number > 0 && !weights_) start_motion();  // the last frame is still the first
   now_.place = place;
   now_.last_use = last_use;
   now_.step = now_.number == 0 ? settings_.first_step
