@@ -144,7 +144,8 @@ class Text(FolderTest):
         tables = re.findall(r"^(Table C-\d).*\n\n\| step \| value \|\n\|---\|---\|\n((?:\|.*\n)+)",
                             text, re.MULTILINE)
         self.assertEqual([name for name, _ in tables],
-                         ["Table C-3", "Table C-4", "Table C-5", "Table C-6", "Table C-7"])
+                         ["Table C-3", "Table C-4", "Table C-5", "Table C-6", "Table C-7",
+                          "Table C-8"])
         for name, rows in tables:
             v = specdec.Decoder(PROGRAM, b"", None, widths=True).variables
             for step, value in re.findall(r"^\| (.*) \| (.*)\|$", rows, re.MULTILINE):

@@ -213,8 +213,8 @@ class SkinnedAnalyser {
       bone.stretch_axes[c] = static_cast<std::int32_t>(
           std::clamp<std::int64_t>(round_to_int(part * kUnit), -32768, 32767));
     }
-    // A factor moves a point by what it differs, times a third of the squared distance in the
-    // mean. Bones below take over the stretch, and its error.
+    // The error of a factor displaces a point by its distance along the axis, whose square is a
+    // third of the squared distance on average. Descendants inherit the error.
     const double moment = mass_and_moment(b, descendants(b)).second;
     const double step = step_ / std::sqrt(std::max(moment / 3.0, kMinMass));
     bone.stretch_step_idx = step_idx(step * exact_exp2(kStretchFractionBits));
