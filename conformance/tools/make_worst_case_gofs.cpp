@@ -150,6 +150,11 @@ SharedRig make_rig(const Size& size, const OrderedMesh& mesh, Noise& noise) {
   fill_rig(rig, size, mesh, noise, 0);
   rig.rest = {false, true, 8, 8, true, true};
   rig.counterparts.resize(size.vertices);
+  rig.stretch_flag = true;
+  for (Bone& bone : rig.bones) {
+    bone.stretch = Stretch::kOwnAxes;
+    for (std::int32_t& x : bone.stretch_axes) x = static_cast<std::int32_t>(noise.below(32768));
+  }
   return rig;
 }
 
@@ -162,10 +167,13 @@ SkinnedGof make_tracks(const Size& size, const SharedRig& rig, Noise& noise) {
   gof.layer_group_size = rig.layer_group_size;
   gof.prediction = rig.prediction;
   gof.slice_layers = rig.slice_layers;
+  gof.stretch_flag = rig.stretch_flag;
   gof.bones = rig.bones;
   for (Bone& bone : gof.bones) {
     add_tracks(bone, size.frames, noise);
-    bone.rotation_between = bone.origin_between = kMaxBetween;
+    bone.stretch_order = kMaxPredictorOrder;
+    bone.stretch_residual = noise.track(size.frames);
+    bone.rotation_between = bone.origin_between = bone.stretch_between = kMaxBetween;
   }
   for (std::uint32_t l = 0; l < size.components; ++l) {
     gof.trajectories.push_back(make_trajectory(size.frames, noise));

@@ -7,8 +7,9 @@ namespace rlpc::worst_case {
 namespace {
 
 std::uint64_t factors_without_components(Kind kind, const Size& size) {
-  if (kind == Kind::kCluster) return 9 * std::uint64_t{size.frames};  // three seeds
-  return 6 * std::uint64_t{size.bones} * size.frames + 3 * std::uint64_t{size.vertices};
+  if (kind == Kind::kCluster) return 9 * std::uint64_t{size.frames};       // three seeds
+  const std::uint64_t factors_of_bone = kind == Kind::kSharedRig ? 9 : 6;  // with stretches
+  return factors_of_bone * size.bones * size.frames + 3 * std::uint64_t{size.vertices};
 }
 
 std::uint64_t factors_of_component(Kind kind, const Size& size) {
