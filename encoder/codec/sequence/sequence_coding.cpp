@@ -57,8 +57,7 @@ InputResult<SpanFrames> SequenceCoding::read_frames(FrameSource& source,
     source.read_bones(span.first + f, std::span(maps).subspan(f * num_bones, num_bones));
   }
   const auto rig = [&](bool may_stretch) {
-    return rig_of_span(*source.rig(), maps, header_.grid, connectivity_.input_vertex,
-                       may_stretch);
+    return rig_of_span(*source.rig(), maps, header_, connectivity_.input_vertex, may_stretch);
   };
   frames->input_rig = rig(settings_.profile == Profile::kHigh);
   if (frames->input_rig && frames->input_rig->stretches()) frames->rigid_rig = rig(false);

@@ -79,17 +79,19 @@ class RigMaker {
     for (const BoneMap& map : maps) maps_.push_back(motion_of(map));
   }
 
-  Rig make(std::span<const std::uint32_t> input_vertex, bool may_stretch) {
+  Rig make(std::span<const std::uint32_t> input_vertex, int position_bits, bool may_stretch) {
     points_ = points_of_bones();
     merge_still_bones();
     drop_idle_bones();
-    if (may_stretch) find_stretched_bones();
+    const double growth = may_stretch ? find_growth() : 0.0;
+    place_rest_shape(std::max(growth, 1.0), position_bits);
+    if (growth > 0.0) find_stretched_bones();
     Rig rig;
     for (std::size_t b = 0; b < num_bones(); ++b) {
       if (is_kept_[b]) add_bone(b, rig);
     }
     for (const std::uint32_t v : input_vertex) {
-      rig.rest.push_back(on_grid(enlarged(point_of(&from_.rest[3 * std::size_t{v}]))));
+      rig.rest.push_back(on_grid(placed(point_of(&from_.rest[3 * std::size_t{v}]))));
       rig.weights.push_back(weights_of(v));
     }
     return rig;
@@ -194,7 +196,7 @@ class RigMaker {
   // points by more than rounding does.
   bool shows(const Eigen::Matrix3d& error, std::size_t b, std::size_t frame) const {
     const Vec3d pivot = point_of(from_.bones[b].pivot.data());
-    const Eigen::Matrix3d displacement = enlarged_ * above(b, frame) * error;
+    const Eigen::Matrix3d displacement = times_ * above(b, frame) * error;
     return std::any_of(points_[b].begin(), points_[b].end(), [&](const Vec3d& p) {
       return !((displacement * (p - pivot)).norm() * per_step_ <= kSame);
     });
@@ -204,29 +206,33 @@ class RigMaker {
   bool are_rotations(std::size_t b, std::span<const Eigen::Matrix3d> local) const {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     for (std::size_t f = 0; f < local.size(); ++f) {
-      rotation = closest_rotation(local[f], rotation);
+      rotation = rotation_of(local[f], rotation);
       if (shows(local[f] - rotation, b, f)) return false;
     }
     return true;
   }
 
-  // Finds the stretches of bones, and how much the rest shape must be enlarged for them.
-  void find_stretched_bones() {
-    own_stretch_.assign(num_bones(), Stretch::kNone);
-    is_stretched_.assign(num_bones(), false);
-    stretch_axes_.assign(num_bones(), Eigen::Matrix3d::Identity());
+  // Finds out whether bones stretch, and returns how much larger they become than in the rest
+  // shape of the source.
+  double find_growth() {
     bool are_rigid = true;
     double largest = 1.0;
     for (std::size_t b = 0; b < num_bones(); ++b) {
       if (!is_kept_[b]) continue;
       are_rigid = are_rigid && are_rotations(b, local_maps(b));
       for (std::size_t f = 0; f < num_frames(); ++f) {
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < 3; ++c) {
           largest = std::max(largest, map(f, b).row(c).head<3>().norm());
+        }
       }
     }
-    if (are_rigid) return;
-    enlarge(largest);
+    return are_rigid ? 0.0 : largest;
+  }
+
+  void find_stretched_bones() {
+    own_stretch_.assign(num_bones(), Stretch::kNone);
+    is_stretched_.assign(num_bones(), false);
+    stretch_axes_.assign(num_bones(), Eigen::Matrix3d::Identity());
     for (std::size_t b = 0; b < num_bones(); ++b) {
       if (is_kept_[b]) find_stretch(b);
     }
@@ -234,28 +240,44 @@ class RigMaker {
 
   // Returns the linear maps of a bone relative to its parent, [frame].
   std::vector<Eigen::Matrix3d> local_maps(std::size_t b) const {
-    std::vector<Eigen::Matrix3d> local;
+    std::vector<Eigen::Matrix3d> local{Eigen::Matrix3d::Identity()};  // before the first
     for (std::size_t f = 0; f < num_frames(); ++f) {
       const Eigen::Matrix3d whole = map(f, b).leftCols<3>();
-      local.push_back(parent_[b] == kNone ? whole : quotient(above(b, f), whole));
+      local.push_back(parent_[b] == kNone ? whole : quotient(above(b, f), whole, local.back()));
     }
+    local.erase(local.begin());
     return local;
   }
 
-  // Enlarges the rest shape about its centre.
-  void enlarge(double times) {
-    enlarged_ = times;
-    const double n = static_cast<double>(from_.rest.size()) / 3.0;
+  // Puts the rest shape where its coordinates can be coded (8.10.2), if it is not: animations
+  // may be far from it. Enlarges it by `times`, or as much as there is room for.
+  void place_rest_shape(double times, int position_bits) {
+    constexpr double kRoom = 0.99;  // fixed: for what fitting changes
+    limit_ = kRoom * exact_exp2(position_bits) / per_step_;
+    middle_ = Vec3d(grid_.origin[0], grid_.origin[1], grid_.origin[2]) / per_step_;
+    Vec3d min = point_of(from_.rest.data());
+    Vec3d max = min;
     for (std::size_t i = 0; i < from_.rest.size(); i += 3) {
-      centre_ += point_of(&from_.rest[i]) / n;
+      min = min.cwiseMin(point_of(&from_.rest[i]));
+      max = max.cwiseMax(point_of(&from_.rest[i]));
     }
+    const Vec3d half = 0.5 * (max - min);
+    times_ = std::max(1.0, std::min(times, limit_ / half.maxCoeff()));
+    centre_ = 0.5 * (min + max);
+    const bool fits = ((centre_ - middle_).cwiseAbs() + times_ * half).maxCoeff() <= limit_;
+    if (fits && times_ == 1.0) return;
+    is_placed_ = true;
+    new_centre_ = fits ? centre_ : middle_;
     for (Motion& m : maps_) {
       const Vec3d image = moved(m, centre_);
-      m.leftCols<3>() /= times;
-      m.col(3) = image - m.leftCols<3>() * centre_;
+      m.leftCols<3>() /= times_;
+      m.col(3) = image - m.leftCols<3>() * new_centre_;
     }
   }
-  Vec3d enlarged(const Vec3d& p) const { return centre_ + enlarged_ * (p - centre_); }
+  // Returns the place in the rest shape of a point of that of the source.
+  Vec3d placed(const Vec3d& p) const {
+    return is_placed_ ? Vec3d(new_centre_ + times_ * (p - centre_)) : p;
+  }
 
   // Finds along which axes a bone stretches relative to its parent.
   void find_stretch(std::size_t b) {
@@ -268,7 +290,7 @@ class RigMaker {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     bool along_rest = true;
     for (std::size_t f = 0; f < local.size(); ++f) {
-      rotation = closest_rotation(local[f], rotation);
+      rotation = rotation_of(local[f], rotation);
       const Eigen::Matrix3d stretch = rotation.transpose() * local[f];
       stretches.push_back(0.5 * (stretch + stretch.transpose()));
       Eigen::Matrix3d rest = stretches.back();
@@ -284,7 +306,11 @@ class RigMaker {
     place_[b] = static_cast<std::uint32_t>(rig.bones.size());
     RigBone& bone = rig.bones.emplace_back();
     if (parent_[b] != kNone) bone.parent = static_cast<std::int32_t>(place_[parent_[b]]);
-    const Vec3d pivot = enlarged(point_of(from_.bones[b].pivot.data()));
+    // A pivot that cannot be coded is replaced: its bone moves any other as well.
+    const Vec3d room = Vec3d::Constant(limit_);
+    const Vec3d pivot = placed(point_of(from_.bones[b].pivot.data()))
+                            .cwiseMax(middle_ - room)
+                            .cwiseMin(middle_ + room);
     bone.pivot = on_grid(pivot);
     const bool is_stretched = !is_stretched_.empty() && is_stretched_[b];
     if (is_stretched) {
@@ -336,19 +362,23 @@ class RigMaker {
   std::vector<Stretch> own_stretch_;        // [bone]; empty: no bone stretches
   std::vector<bool> is_stretched_;          // [bone]: by itself or with one above it
   std::vector<Eigen::Matrix3d> stretch_axes_;  // [bone]: columns
-  Vec3d centre_ = Vec3d::Zero();               // about which the rest shape is enlarged
-  double enlarged_ = 1.0;
+  Vec3d middle_ = Vec3d::Zero();               // of the coordinates that can be coded
+  double limit_ = 0.0;                         // largest distance from it on an axis
+  bool is_placed_ = false;        // the rest shape is not where that of the source is
+  Vec3d centre_ = Vec3d::Zero();  // of the rest shape in the source
+  Vec3d new_centre_ = Vec3d::Zero();
+  double times_ = 1.0;  // as large as in the source
 };
 
 }  // namespace
 
 std::shared_ptr<const Rig> rig_of_span(const SourceRig& source, std::span<const BoneMap> maps,
-                                       const Grid& grid,
+                                       const SequenceHeader& header,
                                        std::span<const std::uint32_t> input_vertex,
                                        bool may_stretch) {
   if (!are_moderate(source, maps)) return nullptr;
-  auto rig =
-      std::make_shared<Rig>(RigMaker(source, maps, grid).make(input_vertex, may_stretch));
+  auto rig = std::make_shared<Rig>(RigMaker(source, maps, header.grid)
+                                       .make(input_vertex, header.position_bits, may_stretch));
   const std::size_t count = rig->bones.size();
   if (count < 2 || count > kLevels.back().max_clusters) return nullptr;
   return rig;

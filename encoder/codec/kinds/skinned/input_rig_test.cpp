@@ -55,6 +55,9 @@ class Skeleton final : public FrameSource {
     return std::nullopt;
   }
 
+  // Moves all frames.
+  void move(const std::vector<double>& by) { moved_ = by; }
+
   void read_bones(std::uint32_t frame, std::span<BoneMap> maps) override {
     for (std::size_t b = 0; b < maps.size(); ++b) {
       const SourceRig::Bone& bone = rig()->bones[b];
@@ -74,7 +77,10 @@ class Skeleton final : public FrameSource {
         for (std::size_t k = 0; k < 3; ++k) turned[i][3] -= turned[i][k] * p[k];
       }
       maps[b] = turned;
-      if (bone.parent < 0) continue;
+      if (bone.parent < 0) {
+        for (std::size_t i = 0; i < 3; ++i) maps[b][i][3] += moved_[i];
+        continue;
+      }
       const BoneMap& above = maps[static_cast<std::size_t>(bone.parent)];
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 4; ++j) {
@@ -97,6 +103,7 @@ class Skeleton final : public FrameSource {
 
   std::vector<double> turn_;
   std::vector<double> stretch_;
+  std::vector<double> moved_{0.0, 0.0, 0.0};
 };
 
 // A chain of bones along x, one unit apart, each with two vertices. weights[b]: what they
@@ -124,6 +131,13 @@ Grid fine_grid() {
   return grid;
 }
 
+SequenceHeader fine_header() {
+  SequenceHeader header;
+  header.grid = fine_grid();
+  header.position_bits = 18;
+  return header;
+}
+
 std::shared_ptr<const Rig> rig_of(FrameSource& source, const FrameRange& span) {
   std::vector<std::uint32_t> order(source.num_vertices());
   std::iota(order.rbegin(), order.rend(), 0U);  // decoded vertices in another order
@@ -132,7 +146,7 @@ std::shared_ptr<const Rig> rig_of(FrameSource& source, const FrameRange& span) {
   for (std::uint32_t f = 0; f < span.count; ++f) {
     source.read_bones(span.first + f, std::span(maps).subspan(f * num_bones, num_bones));
   }
-  return rig_of_span(*source.rig(), maps, fine_grid(), order, true);
+  return rig_of_span(*source.rig(), maps, fine_header(), order, true);
 }
 
 void expect_positions(FrameSource& source, const Rig& rig, const FrameRange& span) {
@@ -200,13 +214,41 @@ TEST(InputRig, EnlargesTheRestShapeWhereBonesGrow) {
   }
 }
 
+// Frames are far from the rest shape, which does not fit the coordinates of rest positions
+// there.
+TEST(InputRig, MovesTheRestShapeToTheFrames) {
+  for (const bool stretches : {false, true}) {
+    SourceRig far = chain({2, 1.5F, 1});
+    for (std::size_t i = 0; i < far.rest.size(); ++i) far.rest[i] += i % 3 == 1 ? 500.0 : -90.0;
+    for (SourceRig::Bone& bone : far.bones) {
+      for (std::size_t c = 0; c < 3; ++c) bone.pivot[c] += c == 1 ? 500.0 : -90.0;
+    }
+    Skeleton source(std::move(far), {0.3, -0.2, 0.4},
+                    std::vector<double>(3, stretches ? 0.4 : 0.0));
+    const std::vector<double> back{90.0, -500.0, 90.0};
+    source.move(back);
+    const FrameRange span{0, kFrames};
+    const auto rig = rig_of(source, span);
+    ASSERT_TRUE(rig);
+    EXPECT_EQ(rig->stretches(), stretches);
+    expect_positions(source, *rig, span);
+    const double limit = 1 << 18;
+    for (const Point& p : rig->rest) {
+      for (const double x : p) EXPECT_LE(std::abs(x), limit);
+    }
+    for (const RigBone& bone : rig->bones) {
+      for (const double x : bone.pivot) EXPECT_LE(std::abs(x), limit);
+    }
+  }
+}
+
 TEST(InputRig, HasRotationsAloneInProfilesWithoutStretch) {
   Skeleton source(chain({2, 1.5F, 1}), {0.3, -0.2, 0.4}, {0, 0.3, 0});
   std::vector<std::uint32_t> order(source.num_vertices());
   std::iota(order.begin(), order.end(), 0U);
   std::vector<BoneMap> maps(3);
   source.read_bones(4, maps);
-  const auto rig = rig_of_span(*source.rig(), maps, fine_grid(), order, false);
+  const auto rig = rig_of_span(*source.rig(), maps, fine_header(), order, false);
   ASSERT_TRUE(rig);
   for (const RigBone& bone : rig->bones) {
     EXPECT_EQ(bone.stretch, Stretch::kNone);
@@ -265,7 +307,7 @@ TEST(InputRig, HasRotationsWhateverTheMapsAre) {
       }
       if (random() % 4 == 0) map[1] = map[0];  // flat
     }
-    const auto made = rig_of_span(rig, maps, fine_grid(), order, true);
+    const auto made = rig_of_span(rig, maps, fine_header(), order, true);
     if (!made) continue;
     for (const RigBone& bone : made->bones) {
       for (const RigPose& pose : bone.poses) {
@@ -286,12 +328,12 @@ TEST(InputRig, IsAbsentWhereNumbersAreOfNoUse) {
     for (std::size_t i = 0; i < maps.size(); ++i) {
       maps[i] = {{{1, 0, 0, static_cast<double>(i * i)}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     }
-    EXPECT_TRUE(rig_of_span(chain({2, 1}), maps, fine_grid(), order, true));
+    EXPECT_TRUE(rig_of_span(chain({2, 1}), maps, fine_header(), order, true));
     SourceRig far = chain({2, 1});
     far.rest[4] = x;
-    EXPECT_FALSE(rig_of_span(far, maps, fine_grid(), order, true));
+    EXPECT_FALSE(rig_of_span(far, maps, fine_header(), order, true));
     maps[2][1][3] = x;
-    EXPECT_FALSE(rig_of_span(chain({2, 1}), maps, fine_grid(), order, true));
+    EXPECT_FALSE(rig_of_span(chain({2, 1}), maps, fine_header(), order, true));
   }
 }
 

@@ -9,11 +9,14 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <random>
 #include <utility>
 #include <vector>
 
 #include "common/testing/tube.h"
 #include "encoder/codec/kinds/skinned/fit/bone_fit.h"
+#include "encoder/codec/kinds/skinned/fit/bone_stretch.h"
+#include "encoder/codec/kinds/skinned/fit/rigid_motion.h"
 #include "encoder/codec/spans/lagrangian.h"
 
 namespace rlpc {
@@ -265,6 +268,28 @@ TEST(SkinnedSpanCoder, LeavesARigThatDoesNotFit) {
   }();
   tube.animation.frames.input_rig = std::make_shared<Rig>(std::move(wrong));
   EXPECT_LE(encode(tube.animation, 20.0, {}).bytes, before);
+}
+
+// Stretches below what quantisation leaves: their tracks would cost bits for nothing.
+TEST(SkinnedSpanCoder, LeavesStretchesThatAreNotWorthTheirBits) {
+  SegmentedTube tube;
+  tube.animation.header.profile_idc = kProfileHigh;
+  const std::size_t rigid = encode(tube.animation, 20.0, {}).bytes;
+  const auto plain = tube.animation.frames.input_rig;
+  Rig stretched = *plain;
+  std::mt19937 random(1);
+  for (RigBone& bone : stretched.bones) {
+    bone.stretch = Stretch::kRestAxes;
+    for (const RigPose& pose : bone.poses) {
+      const double factor = std::uniform_real_distribution<double>(0.997, 1.0)(random);
+      bone.axes.push_back(images_of(factor * rotation_matrix(pose.rotation)));
+    }
+  }
+  tube.animation.frames.input_rig = std::make_shared<Rig>(stretched);
+  const std::size_t with = encode(tube.animation, 20.0, {}).bytes;
+  EXPECT_GT(with, rigid);
+  tube.animation.frames.rigid_rig = plain;
+  EXPECT_EQ(encode(tube.animation, 20.0, {}).bytes, rigid);
 }
 
 std::size_t bytes_of(const EncodedSpan& gof) {

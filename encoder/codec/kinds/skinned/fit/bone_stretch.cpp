@@ -41,7 +41,8 @@ AxisImages images_of(const Eigen::Matrix3d& matrix) {
   return images;
 }
 
-Eigen::Matrix3d quotient(const Eigen::Matrix3d& after, const Eigen::Matrix3d& whole) {
+Eigen::Matrix3d quotient(const Eigen::Matrix3d& after, const Eigen::Matrix3d& whole,
+                         const Eigen::Matrix3d& before) {
   constexpr double kFlat = 1e-8;  // fixed: squared; rounding errors of axes are 1e-9
   Eigen::Matrix3d quotient = Eigen::Matrix3d::Zero();
   for (std::size_t column = 0; column < 3; ++column) {
@@ -51,13 +52,19 @@ Eigen::Matrix3d quotient(const Eigen::Matrix3d& after, const Eigen::Matrix3d& wh
         m.a[i][k] = after.col(index(i)).dot(after.col(index(k)));
       }
       m.a[i][i] += kFlat;
-      m.b[i] = after.col(index(i)).dot(whole.col(index(column)));
+      m.b[i] = after.col(index(i)).dot(whole.col(index(column))) +
+               kFlat * before(index(i), index(column));
     }
     const auto solution = solve_small(m);
     if (!solution.is_unique) continue;
     for (std::size_t i = 0; i < 3; ++i) quotient(index(i), index(column)) = solution.x[i];
   }
   return quotient;
+}
+
+Eigen::Matrix3d rotation_of(const Eigen::Matrix3d& map, const Eigen::Matrix3d& before) {
+  constexpr double kFlat = 1e-9;  // fixed: rounding errors of axes
+  return closest_rotation(map + kFlat * before, before);
 }
 
 std::array<double, 3> stretch_along(const Eigen::Matrix3d& along,

@@ -14,9 +14,14 @@ Eigen::Matrix3d matrix_of(const AxisImages& images);
 Eigen::Matrix3d matrix_of(const BoneAxes& decoded);
 AxisImages images_of(const Eigen::Matrix3d& matrix);
 
-// Returns the map X for which after * X is nearest to the whole; where `after` has flattened an
-// axis, X leaves that out.
-Eigen::Matrix3d quotient(const Eigen::Matrix3d& after, const Eigen::Matrix3d& whole);
+// Returns the map X for which after * X is the whole; where `after` has flattened an axis, the
+// one nearest to `before`, that of the previous frame.
+Eigen::Matrix3d quotient(const Eigen::Matrix3d& after, const Eigen::Matrix3d& whole,
+                         const Eigen::Matrix3d& before);
+
+// Returns the rotation nearest to a map; of a map that has flattened axes, the one nearest to
+// `before`.
+Eigen::Matrix3d rotation_of(const Eigen::Matrix3d& map, const Eigen::Matrix3d& before);
 
 // Returns the factors by which a map stretches along the columns of `along` before it rotates.
 std::array<double, 3> stretch_along(const Eigen::Matrix3d& along,

@@ -51,7 +51,7 @@ TEST(BoneStretch, MapsAreRotationsAfterStretches) {
     const Vec3d factors(1.5 + random.number(), 1.5 + random.number(), 1.5 + random.number());
     const Eigen::Matrix3d map = rotation * along * factors.asDiagonal() * along.transpose();
     const Eigen::Matrix3d above = 0.5 * random.rotation();
-    const Eigen::Matrix3d local = quotient(above, above * map);
+    const Eigen::Matrix3d local = quotient(above, above * map, random.rotation());
     EXPECT_NEAR((local - map).norm(), 0.0, 1e-6) << seed;
     const auto found = stretch_along(along, rotation, local);
     for (int i = 0; i < 3; ++i) {
@@ -60,11 +60,20 @@ TEST(BoneStretch, MapsAreRotationsAfterStretches) {
   }
 }
 
-// A parent that has shrunk to nothing leaves nothing to follow.
-TEST(BoneStretch, QuotientsByNothingAreFinite) {
+// A parent that has shrunk to nothing shows nothing of its children.
+TEST(BoneStretch, WhatIsFlatStaysAsItWas) {
+  RandomMaps random(1);
   const Eigen::Matrix3d nothing = Eigen::Matrix3d::Zero();
-  EXPECT_EQ(quotient(nothing, nothing).norm(), 0.0);
-  EXPECT_LT(quotient(1e-12 * Eigen::Matrix3d::Identity(), nothing).norm(), 1e-9);
+  const Eigen::Matrix3d before = random.rotation();
+  EXPECT_LT((quotient(nothing, nothing, before) - before).norm(), 1e-9);
+  EXPECT_LT((rotation_of(nothing, before) - before).norm(), 1e-9);
+  // Flat along y: the map of the other axes shows, and the turn about them.
+  const Eigen::Matrix3d flat = Vec3d(1.0, 0.0, 1.0).asDiagonal();
+  const Eigen::Matrix3d map = random.rotation();
+  const Eigen::Matrix3d found = quotient(flat, flat * map, before);
+  EXPECT_LT((found.row(0) - map.row(0)).norm(), 1e-6);
+  EXPECT_LT((found.row(1) - before.row(1)).norm(), 1e-6);
+  EXPECT_LT((rotation_of(map * flat, before) - map).norm(), 1e-6);
 }
 
 TEST(BoneStretch, ImagesAreColumns) {

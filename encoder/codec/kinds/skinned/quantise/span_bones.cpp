@@ -26,11 +26,12 @@ namespace {
 void set_relative_poses(const Bone& bone, const BoneMotion* above,
                         std::span<const AxisImages> axes, std::span<WantedPose> wanted) {
   const Eigen::Matrix3d along = matrix_of(stretch_axes(bone));
+  Eigen::Matrix3d local = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   for (std::size_t f = 0; f < wanted.size(); ++f) {
-    Eigen::Matrix3d local = matrix_of(axes[f]);
-    if (above != nullptr) local = quotient(matrix_of(above->poses[f].axes), local);
-    rotation = closest_rotation(local, rotation);
+    const Eigen::Matrix3d whole = matrix_of(axes[f]);
+    local = above == nullptr ? whole : quotient(matrix_of(above->poses[f].axes), whole, local);
+    rotation = rotation_of(local, rotation);
     wanted[f].rotation = rotation_quaternion(rotation);
     if (f > 0) keep_sign(wanted[f - 1].rotation, wanted[f].rotation);
     wanted[f].stretch = stretch_along(along, rotation, local);
