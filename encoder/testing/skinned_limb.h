@@ -231,6 +231,7 @@ inline SkinnedLimb random_limb(std::uint32_t seed) {
   LimbRandom random(seed);
   std::vector<double> lengths;
   const int links = 2 + static_cast<int>(random.between(0.0, 3.0));
+  lengths.reserve(static_cast<std::size_t>(links));
   for (int i = 0; i < links; ++i) lengths.push_back(random.between(0.3, 1.2));
   std::vector<LimbBone> bones = limb_chain(lengths);
   const int branches = static_cast<int>(random.between(0.0, 3.0));

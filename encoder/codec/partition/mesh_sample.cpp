@@ -52,7 +52,7 @@ std::vector<std::uint8_t> mark_regions(const Graph& graph, std::uint32_t max) {
   for (std::uint32_t region = 0; region < kRegions; ++region) {
     const std::uint32_t part = max * (region + 1) / kRegions - max * region / kRegions;
     auto start = static_cast<std::uint32_t>((2 * std::uint64_t{region} + 1) * num_vertices /
-                                            (2 * kRegions));
+                                            (2 * std::uint64_t{kRegions}));
     while (part > 0 && is_in[start]) start = (start + 1) % num_vertices;
     grow(graph, start, part, is_in);
   }

@@ -49,7 +49,8 @@ InputResult<Frames> read_some(FrameSource& source) {
   const std::uint32_t count = std::min(source.num_frames(), kFrames);
   std::vector<double> xyz(frames.values);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint64_t f = (2 * std::uint64_t{i} + 1) * source.num_frames() / (2 * count);
+    const std::uint64_t f =
+        (2 * std::uint64_t{i} + 1) * source.num_frames() / (2 * std::uint64_t{count});
     if (auto error = source.read_exact(static_cast<std::uint32_t>(f), xyz)) return *error;
     frames.xyz.insert(frames.xyz.end(), xyz.begin(), xyz.end());
   }
@@ -61,10 +62,11 @@ double rms_spread(const Frames& frames) {
   double sum = 0.0;
   for (std::size_t f = 0; f < frames.count(); ++f) {
     const auto xyz = frames.frame(f);
+    const std::size_t num_points = xyz.size() / 3;
     for (std::size_t c = 0; c < 3; ++c) {
       double mean = 0.0;
       for (std::size_t i = c; i < xyz.size(); i += 3) mean += xyz[i];
-      mean /= static_cast<double>(xyz.size() / 3);
+      mean /= static_cast<double>(num_points);
       for (std::size_t i = c; i < xyz.size(); i += 3) sum += (xyz[i] - mean) * (xyz[i] - mean);
     }
   }

@@ -181,18 +181,20 @@ void add_baseline_options(CLI::App& app, EncodeCommandLine& line) {
       ->group(baseline);
 }
 
-void add_main_options(CLI::App& app, EncodeCommandLine& line) {
-  const std::string tools = "Main and High profiles only; any of these disables cluster GOFs";
-  MainTools& t = line.options.settings.main;
-  const auto add_number = [&](const char* name, std::uint32_t& value, std::uint32_t max,
-                              const char* what) {
-    app.add_option(name, value, what)
-        ->check(CLI::Range(std::uint32_t{1}, max))
-        ->option_text("N")
-        ->group(tools);
-  };
-  add_number("--bones", t.bones, 1024, "Maximum bones per GOF (default: chosen)");
-  add_number("--influences", t.influences, kMaxExtraBones,
+constexpr const char* kTools =
+    "Main and High profiles only; any of these disables cluster GOFs";
+
+void add_number(CLI::App& app, const char* name, std::uint32_t& value, std::uint32_t max,
+                const char* what) {
+  app.add_option(name, value, what)
+      ->check(CLI::Range(std::uint32_t{1}, max))
+      ->option_text("N")
+      ->group(kTools);
+}
+
+void add_main_tools(CLI::App& app, MainTools& t) {
+  add_number(app, "--bones", t.bones, 1024, "Maximum bones per GOF (default: chosen)");
+  add_number(app, "--influences", t.influences, kMaxExtraBones,
              "Maximum bones per vertex (default: chosen)");
   add_choice<std::optional<Prediction>>(
       app, "--prediction", t.prediction,
@@ -203,29 +205,32 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
        {"layers", Prediction::kLayers}},
       "Prediction of spatial factors: auto (default), none, parallelogram, parallelograms "
       "(all), layers")
-      ->group(tools);
+      ->group(kTools);
   add_choice<bool>(
       app, "--basis-steps", t.cobra_steps, {{"equal", false}, {"cobra", true}},
       "Quantiser steps of temporal factors: equal (default: equal distortion), cobra")
-      ->group(tools);
+      ->group(kTools);
   add_off_switch(app, "--no-geometry-weights", t.geometry_weights,
                  "Predict with plain weights, which do not depend on the rest shape")
-      ->group(tools);
+      ->group(kTools);
   add_off_switch(app, "--no-outer-ring", t.outer_ring, "Predict from the inner ring only")
-      ->group(tools);
+      ->group(kTools);
   add_off_switch(app, "--no-layer-steps", t.layer_steps,
                  "Use the same quantiser steps in all layers")
-      ->group(tools);
+      ->group(kTools);
   add_off_switch(app, "--no-temporal-weights", t.temporal_weights,
                  "Use only the fixed predictors of temporal factors")
-      ->group(tools);
+      ->group(kTools);
   add_off_switch(app, "--no-clusters", t.clusters, "No cluster GOFs, even where they cost less")
-      ->group(tools);
+      ->group(kTools);
+}
+
+void add_high_tools(CLI::App& app, MainTools& t) {
   app.add_option("--adaptive-factors", t.adaptive_factors,
                  "Trajectories that adapt prediction weights, High profile (default: all)")
       ->check(CLI::Range(std::uint32_t{0}, kLevels.back().max_components))
       ->option_text("N")
-      ->group(tools);
+      ->group(kTools);
   add_choice<std::optional<RestTools>>(
       app, "--rest", t.rest,
       {{"auto", std::nullopt},
@@ -235,20 +240,23 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
       "Coding of rest positions and first frames, High profile: auto (default: all of these), "
       "prediction (like other values), order (also in an order of their own), counterparts "
       "(also from parts of the same shape)")
-      ->group(tools);
+      ->group(kTools);
   app.add_option("--track-levels", t.track_levels,
                  "Levels of hierarchical tracks, High profile; 0: none (default: 1)")
       ->check(CLI::Range(0, kMaxTrackLevels))
       ->option_text("N")
-      ->group(tools);
+      ->group(kTools);
   app.add_option("--temporal-layers", t.temporal_layers,
                  "Temporal layers that a stream can be cut to, High profile (default: 1)")
       ->check(CLI::Range(1, kMaxTrackLevels + 1))
       ->option_text("N")
-      ->group(tools);
-  add_number("--component-groups", t.component_groups, 255,
+      ->group(kTools);
+}
+
+void add_cut_points(CLI::App& app, MainTools& t) {
+  add_number(app, "--component-groups", t.component_groups, 255,
              "Cut points among trajectories, at most one each (default: by size)");
-  add_number("--layer-groups", t.layer_groups, 255,
+  add_number(app, "--layer-groups", t.layer_groups, 255,
              "Cut points among vertex layers, at most one each (default: by size)");
   app.add_option_function<std::vector<std::uint32_t>>(
          "--layer-cuts",
@@ -261,7 +269,7 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
       ->delimiter(',')
       ->check(CLI::PositiveNumber)
       ->option_text("V,...")
-      ->group(tools)
+      ->group(kTools)
       ->excludes("--layer-groups");
 }
 
@@ -270,7 +278,10 @@ void add_main_options(CLI::App& app, EncodeCommandLine& line) {
 void add_method_options(CLI::App& app, EncodeCommandLine& line) {
   add_attribute_options(app, line);
   add_profile_options(app, line);
-  add_main_options(app, line);
+  MainTools& tools = line.options.settings.main;
+  add_main_tools(app, tools);
+  add_high_tools(app, tools);
+  add_cut_points(app, tools);
   add_frame_options(app, line);
   add_baseline_options(app, line);
 }

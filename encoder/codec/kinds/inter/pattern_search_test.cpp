@@ -63,7 +63,7 @@ class PatternSearch : public testing::Test {
     settings_.inter.pattern.reset();
     const EncodedSpan best = encoded(frames);
     EXPECT_EQ(best.choices.size(), 1U);
-    const std::string pattern = frame_pattern_text(best.choices.front().pattern);
+    std::string pattern = frame_pattern_text(best.choices.front().pattern);
     for (const char* const text : {"previous", "first", "dyadic:16", "dyadic:64"}) {
       if (text == pattern) continue;
       settings_.inter.pattern = parse_frame_pattern_text(text);

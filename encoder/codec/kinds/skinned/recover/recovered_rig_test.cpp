@@ -222,25 +222,25 @@ class NotSkinned : public testing::Test {
   // Expects no rig for a mesh with the triangles of the limb.
   template <typename Position>
   void expect_none(const Position& position, std::uint32_t num_frames = kFrames) const {
-    const SpanFrames frames = cached_frames(limb.frames.num_vertices, num_frames, position);
-    EXPECT_FALSE(recover_rig(frames, limb.triangles).has_value());
+    const SpanFrames frames = cached_frames(limb_.frames.num_vertices, num_frames, position);
+    EXPECT_FALSE(recover_rig(frames, limb_.triangles).has_value());
   }
 
-  const SkinnedLimb limb{limb_chain(std::array{1.0, 1.0, 1.0}), {.num_frames = kFrames}};
+  const SkinnedLimb limb_{limb_chain(std::array{1.0, 1.0, 1.0}), {.num_frames = kFrames}};
 };
 
 TEST_F(NotSkinned, RandomMotion) {
   LimbRandom random(5);
   expect_none([&](std::uint32_t, std::uint32_t v) -> Vec3d {
-    return limb.rest[v] + random.vector(0.2);
+    return limb_.rest[v] + random.vector(0.2);
   });
 }
 
 TEST_F(NotSkinned, Waves) {
   expect_none([&](std::uint32_t f, std::uint32_t v) {
-    Vec3d p = limb.rest[v];
+    Vec3d p = limb_.rest[v];
     for (int k = 1; k <= 12; ++k) {
-      const double phase = limb.rest[v].dot(Vec3d(2.1 * k, 1.3 * k, -1.7 * k));
+      const double phase = limb_.rest[v].dot(Vec3d(2.1 * k, 1.3 * k, -1.7 * k));
       p += 0.1 / k *
            Vec3d(std::sin(0.2 * k * f + phase), std::cos(0.3 * f - 1.1 * phase),
                  std::sin(0.17 * k * f + 0.7 * phase));
@@ -252,21 +252,21 @@ TEST_F(NotSkinned, Waves) {
 TEST_F(NotSkinned, NoiseOnALimb) {
   LimbRandom random(6);
   expect_none([&](std::uint32_t f, std::uint32_t v) -> Vec3d {
-    return limb.position(f, v) + random.vector(1e-3);
+    return limb_.position(f, v) + random.vector(1e-3);
   });
 }
 
 TEST_F(NotSkinned, FewFrames) {
-  const auto position = [&](std::uint32_t f, std::uint32_t v) { return limb.position(f, v); };
+  const auto position = [&](std::uint32_t f, std::uint32_t v) { return limb_.position(f, v); };
   expect_none(position, 1);
   expect_none(position, 15);
-  EXPECT_TRUE(recover_rig(limb.frames, limb.triangles).has_value());
+  EXPECT_TRUE(recover_rig(limb_.frames, limb_.triangles).has_value());
 }
 
 TEST_F(NotSkinned, StillOrRigid) {
-  expect_none([&](std::uint32_t, std::uint32_t v) { return limb.rest[v]; });
+  expect_none([&](std::uint32_t, std::uint32_t v) { return limb_.rest[v]; });
   expect_none([&](std::uint32_t f, std::uint32_t v) {
-    return moved(limb.motions[1][f], limb.rest[v]);
+    return moved(limb_.motions[1][f], limb_.rest[v]);
   });
 }
 
@@ -276,21 +276,21 @@ TEST_F(NotSkinned, OnePlace) {
 }
 
 TEST_F(NotSkinned, NoTriangles) {
-  EXPECT_FALSE(recover_rig(limb.frames, {}).has_value());
+  EXPECT_FALSE(recover_rig(limb_.frames, {}).has_value());
   EXPECT_FALSE(recover_rig(SpanFrames{0, kFrames, {}}, {}).has_value());
 }
 
 // A translation alone tells no bone from another.
 TEST_F(NotSkinned, PiecesThatMoveApart) {
-  const std::uint32_t half = limb.frames.num_vertices / 2;
+  const std::uint32_t half = limb_.frames.num_vertices / 2;
   std::vector<Triangle> triangles;
-  for (const Triangle& t : limb.triangles) {
+  for (const Triangle& t : limb_.triangles) {
     if ((t[0] < half) == (t[1] < half) && (t[1] < half) == (t[2] < half))
       triangles.push_back(t);
   }
   const SpanFrames frames =
       cached_frames(2 * half, kFrames, [&](std::uint32_t f, std::uint32_t v) -> Vec3d {
-        return limb.rest[v] + (v < half ? 0.02 : -0.03) * Vec3d(f, std::sin(0.2 * f), 0.0);
+        return limb_.rest[v] + (v < half ? 0.02 : -0.03) * Vec3d(f, std::sin(0.2 * f), 0.0);
       });
   EXPECT_FALSE(recover_rig(frames, triangles).has_value());
 }

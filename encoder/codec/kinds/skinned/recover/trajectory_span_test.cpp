@@ -106,6 +106,7 @@ std::vector<std::uint32_t> patch() {
 
 RotationColumns columns_of(const std::vector<Rotations>& rotations) {
   std::vector<const Rotations*> all;
+  all.reserve(rotations.size());
   for (const Rotations& r : rotations) all.push_back(&r);
   return orthonormal_columns(all);
 }
