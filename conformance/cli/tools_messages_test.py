@@ -141,6 +141,16 @@ class Messages(ToolsTest):
         self.assertNotIn(b"trial", self.ok(*clip).out)
         self.assertRegex(self.ok(*clip, "--verbose").out, rb"GOF.* components?, \d+ trial")
 
+    def test_stages_are_timed_on_request(self):
+        self.clip(4)
+        clip = ["rlpcenc", self.path("clip.obj"), "--points", self.path("clip.pc2"),
+                "-o", self.path("a.rlpc")]
+        self.assertNotIn("stage_seconds", self.ok(*clip, "--json").json())
+        self.assertIn("connectivity", self.ok(*clip, "--json", "-v").json()["stage_seconds"])
+        self.assertRegex(self.ok(*clip, "-v", "--threads", 1).out, rb"\n  seconds: ")
+        self.assertRegex(self.ok(*clip, "-v", "--threads", 2).out,
+                         rb"\n  seconds of the first thread: ")
+
     def test_the_player_is_not_built(self):
         stream = self.stream()
         self.fails(4, "none.html: cannot read the player", "rlpcdec", stream, "--html",

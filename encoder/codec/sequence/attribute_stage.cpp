@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "encoder/codec/attributes/corner_map.h"
+#include "encoder/codec/stage_clock.h"
 
 namespace rlpc {
 
@@ -27,6 +28,7 @@ std::vector<std::uint32_t> AttributeStage::frames() const {
 }
 
 void AttributeStage::encode(std::span<const DecodedFrame> decoded, StreamAssembly& stream) {
+  const Stage stage("attributes");
   if (!has_sets()) return;
   EncodedAttributes encoded =
       encode_attributes({source_, connectivity_, corner_map_, decoded[0].positions,

@@ -17,6 +17,7 @@
 #include "encoder/codec/sequence/format_header.h"
 #include "encoder/codec/sequence/memory_need.h"
 #include "encoder/codec/sequence/span_buffer.h"
+#include "encoder/codec/stage_clock.h"
 #include "encoder/codec/write/write_inter_gof.h"
 
 namespace rlpc {
@@ -161,6 +162,7 @@ std::optional<InputError> LowDelayEncoder::code_first(std::span<const float> xyz
 
 std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz,
                                                       std::span<const double> exact) {
+  const Stage stage("inter GOFs");
   SpanBuffer buffer(format_.num_vertices, 1);
   buffer.add(xyz, exact);
   const auto frame = coding_->read_frames(buffer, {0, 1, 1});
@@ -185,6 +187,7 @@ std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz
   };
   const auto measured = coding_->measure({buffer, reading}, {0, 1, 1}, decode, metrics_);
   if (!measured) return measured.error();
+  const Stage verification("verification");
   StreamVerifier& verifier =
       out_.verifier(coding_->header(), coding_->connectivity(), num_threads_);
   std::vector<double> original(xyz.size());

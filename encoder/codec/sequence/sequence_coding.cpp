@@ -12,6 +12,7 @@
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/sequence/choices/gof_kinds.h"
 #include "encoder/codec/spans/kind_search.h"
+#include "encoder/codec/stage_clock.h"
 
 namespace rlpc {
 
@@ -147,6 +148,7 @@ InputResult<std::vector<Bytes>> SequenceCoding::measure(const SharedSource& sour
                                                         const FrameRange& span,
                                                         const DecodeFrame& decode,
                                                         MetricsAccumulator& metrics) const {
+  const Stage stage("metrics");
   constexpr std::uint32_t kTogether = 16;  // fixed: memory
   std::vector<double> before(metrics.last_original().begin(), metrics.last_original().end());
   if (before.empty() && span.first > 0) {

@@ -15,6 +15,7 @@
 #include "encoder/codec/sequence/choices/lossless_grid.h"
 #include "encoder/codec/sequence/memory_need.h"
 #include "encoder/codec/sequence/stream_verifier.h"
+#include "encoder/codec/stage_clock.h"
 
 namespace rlpc {
 namespace {
@@ -77,7 +78,10 @@ std::optional<InputError> SequenceEncoder::prepare() {
   const ThreadPool::Use use(*threads_);
   if (auto error = cut_gofs(header)) return error;
   if (auto error = choose_level(header, longest_gof(spans_))) return error;
-  coding_.emplace(header, settings_, source_.triangles());
+  {
+    const Stage stage("connectivity");
+    coding_.emplace(header, settings_, source_.triangles());
+  }
   stream_.emplace(header, settings_, coding_->connectivity());
   attributes_.emplace(source_.attributes(), source_.triangles(), settings_,
                       coding_->connectivity(), header.num_frames > 1);
@@ -95,6 +99,7 @@ std::optional<InputError> SequenceEncoder::prepare() {
 
 // Chooses, before memory is allotted, the grid and the maximum length of GOFs.
 std::optional<InputError> SequenceEncoder::survey(SequenceHeader& header) {
+  const Stage stage("survey");
   const ThreadPool::Use use(*threads_);
   const auto extent = measure_extent(source_);
   if (!extent) return extent.error();
@@ -169,6 +174,7 @@ std::optional<InputError> SequenceEncoder::allot_memory(const SequenceHeader& he
 // Divides the sequence into spans: by expected cost, or of equal length with preset fast and in
 // the Baseline profile. A span is a GOF or, in the High profile, several.
 std::optional<InputError> SequenceEncoder::cut_gofs(const SequenceHeader& header) {
+  const Stage stage("GOF cuts");
   const std::uint32_t longest = longest_span_of(header);
   if (settings_.profile == Profile::kBaseline || settings_.preset == Preset::kFast ||
       settings_.usable_kind() == GofKind::kInter) {
@@ -337,6 +343,7 @@ InputResult<EncodeReport> SequenceEncoder::write(TargetResult best, const ByteSi
 std::optional<InputError> SequenceEncoder::verify(const std::shared_ptr<StreamBuffer>& stream,
                                                   std::uint64_t end_of_first_gof,
                                                   EncodeReport& report) {
+  const Stage stage("verification");
   StreamVerifier verifier(settings_, coding_->header(), coding_->connectivity().input_vertex,
                           stream, num_threads_);
   verifier.measure_normals(source_.triangles());

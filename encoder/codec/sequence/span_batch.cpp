@@ -7,6 +7,7 @@
 
 #include "common/parallel/for_each.h"
 #include "encoder/codec/spans/lagrangian.h"
+#include "encoder/codec/stage_clock.h"
 
 namespace rlpc {
 namespace {
@@ -110,6 +111,7 @@ void SpanBatch::set_done(Span& span, double done) {
 std::optional<InputError> SpanBatch::read(Span& span) {
   if (!span.frames.xyz.empty()) return std::nullopt;
   const std::lock_guard lock(reading_);
+  const Stage stage("reading");
   auto frames = coding_.read_frames(source_, span.range);
   if (!frames) return frames.error();
   span.frames = std::move(*frames);

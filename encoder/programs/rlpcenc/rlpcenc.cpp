@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -26,6 +27,7 @@
 #include "common/json/json.h"
 #include "encoder/codec/kinds/inter/frame_pattern_text.h"
 #include "encoder/codec/sequence/target/quality.h"
+#include "encoder/codec/stage_clock.h"
 #include "encoder/dry_run.h"
 #include "encoder/meshes/axes.h"
 #include "encoder/meshes/frame_source.h"
@@ -71,6 +73,23 @@ void print_attributes(const EncodeReport& r) {
     std::printf("  materials and textures: %llu bytes\n",
                 static_cast<unsigned long long>(r.bits.asset / 8));
   }
+}
+
+// Prints how long each stage took, the longest first.
+void print_stages(const EncodeOptions& o, std::vector<StageTime> stages) {
+  constexpr double kShown = 0.005;  // seconds
+  std::stable_sort(stages.begin(), stages.end(), [](const StageTime& a, const StageTime& b) {
+    return a.seconds > b.seconds;
+  });
+  std::printf("  seconds%s:", o.settings.threads > 1 ? " of the first thread" : "");
+  const char* before = " ";
+  for (const StageTime& time : stages) {
+    if (time.seconds < kShown) continue;
+    std::printf("%s%.*s %.2f", before, static_cast<int>(time.stage.size()), time.stage.data(),
+                time.seconds);
+    before = ", ";
+  }
+  std::printf("\n");
 }
 
 void print_report(const EncodeOptions& o, const Expectation& e) {
@@ -263,7 +282,9 @@ void warn_if_visible(const EncodeOptions& o, const EncodeReport& report, const V
       v.error_percent, Visibility::kVisiblePercent, finer(o, report, v).c_str());
 }
 
-int tell(const EncodeOptions& o, FrameSource& source, const Expectation& e) {
+int tell(const EncodeOptions& o, FrameSource& source, const Expectation& e,
+         const StageClock& clock) {
+  const std::vector<StageTime> stages = clock.times();
   const auto visibility = measure_visibility(source, e.report.metrics);
   if (!visibility) return complain(visibility.error().message);
   if (o.json) {
@@ -272,9 +293,11 @@ int tell(const EncodeOptions& o, FrameSource& source, const Expectation& e) {
     if (o.dry_run) {
       json["dry_run"] = {{"exact", e.exact()}, {"frames_encoded", e.frames_encoded}};
     }
+    if (o.verbose) json["stage_seconds"] = stages_json(stages);
     std::cout << json_text(json, 2) << "\n";
   } else if (!o.quiet && o.output != "-" && o.order_map != "-") {
     print_report(o, e);
+    if (o.verbose) print_stages(o, stages);
   }
   if (*visibility) warn_if_visible(o, e.report, **visibility);
   for (const AttributeReport& a : e.report.attributes) {
@@ -284,7 +307,7 @@ int tell(const EncodeOptions& o, FrameSource& source, const Expectation& e) {
   return report_target(o, e.report);
 }
 
-int run_dry(const EncodeOptions& o, FrameSource& source) {
+int run_dry(const EncodeOptions& o, FrameSource& source, const StageClock& clock) {
   InputResult<Expectation> expected = InputError{};
   {
     ProgressBar bar("encoding", !o.quiet);
@@ -292,7 +315,7 @@ int run_dry(const EncodeOptions& o, FrameSource& source) {
         expect_encoding(source, o.settings, [&](double fraction) { bar.show(fraction); });
   }
   if (!expected) return complain(expected.error().message);
-  return tell(o, source, *expected);
+  return tell(o, source, *expected, clock);
 }
 
 std::optional<OutputError> write_order(OutputFile& map, const EncodeReport& report) {
@@ -426,9 +449,15 @@ std::optional<std::string> written_over(const EncodeOptions& o, const FrameSourc
   return std::nullopt;
 }
 
+InputResult<std::unique_ptr<FrameSource>> open_source(const InputOptions& input) {
+  const Stage stage("reading");
+  return open_frame_source(input);
+}
+
 int run(EncodeOptions& o) {
   if (o.is_live()) return run_live(o);
-  auto source = open_frame_source(o.input);
+  const StageClock clock;
+  auto source = open_source(o.input);
   if (!source) return complain(source.error().message);
   if (const auto written = written_over(o, **source)) {
     return complain(*written + ": is also an input; choose another name for the output",
@@ -440,7 +469,7 @@ int run(EncodeOptions& o) {
   std::vector<std::string> notes = (*source)->notes();
   for (std::string& doubt : doubts(o, **source)) notes.push_back(std::move(doubt));
   for (const std::string& note : notes) tell_note(o, name, note);
-  if (o.dry_run) return run_dry(o, **source);
+  if (o.dry_run) return run_dry(o, **source, clock);
   const std::size_t told = (*source)->notes().size();
   auto report = encode_to_files(o, **source);
   if (!report) return complain(report.error().message);
@@ -448,7 +477,7 @@ int run(EncodeOptions& o) {
     tell_note(o, name, (*source)->notes()[i]);
   }
   const std::uint32_t frames = report->header.num_frames;
-  return tell(o, **source, {std::move(*report), frames});
+  return tell(o, **source, {std::move(*report), frames}, clock);
 }
 
 // Makes glibc return large blocks, such as those of a GOF, to the system when they are freed.

@@ -10,6 +10,7 @@
 #include "encoder/codec/spans/lagrangian.h"
 #include "encoder/codec/spans/split_coder.h"
 #include "encoder/codec/spans/step_cache.h"
+#include "encoder/codec/stage_clock.h"
 
 namespace rlpc {
 namespace {
@@ -23,6 +24,7 @@ class ClusterSpanCoder : public SpanCoder {
 
   bool needs_frames(double /*step*/, double /*analysis_step*/) const override { return true; }
   std::optional<double> step_in_reach(double step, const SpanCost& rival) override {
+    const Stage stage("cluster GOFs");
     if (!uses_sample()) return step;
     const ClusterSample sample(coding_.mesh(), coding_.settings(), coding_.frames());
     const ClusterSample::Estimate estimate = sample.cheapest(step);
@@ -31,6 +33,7 @@ class ClusterSpanCoder : public SpanCoder {
     return step;
   }
   EncodedSpan encode(double step, double analysis_step) override {
+    const Stage stage("cluster GOFs");
     if (!clusters_) {
       clusters_ = choice_ ? search_clusters_near(coding_, step, *choice_)
                           : search_clusters(coding_, step);

@@ -12,6 +12,7 @@
 #include "encoder/codec/kinds/inter/pattern_search.h"
 #include "encoder/codec/kinds/inter/trial_maker.h"
 #include "encoder/codec/spans/split_coder.h"
+#include "encoder/codec/stage_clock.h"
 
 namespace rlpc {
 namespace {
@@ -54,6 +55,7 @@ class InterSpanCoder : public SpanCoder {
 };
 
 EncodedSpan InterSpanCoder::encode(double step, double /*analysis_step*/) {
+  const Stage stage("inter GOFs");
   const StartTrial start = [&](const InterChoice& choice) {
     return maker_.start(choice, step);
   };
@@ -88,6 +90,7 @@ void InterSpanCoder::choose(double step, const StartTrial& start) {
 }
 
 std::optional<double> InterSpanCoder::step_in_reach(double step, const SpanCost& rival) {
+  const Stage stage("inter GOFs");
   auto found = sample().cheapest_choice(step, rival, kMargin);
   if (!found) return std::nullopt;
   const std::uint32_t larger = kLarger * sample().num_vertices();

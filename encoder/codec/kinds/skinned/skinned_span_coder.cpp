@@ -8,6 +8,7 @@
 #include "encoder/codec/kinds/skinned/search/bone_search.h"
 #include "encoder/codec/kinds/skinned/search/tool_search.h"
 #include "encoder/codec/math/det_math.h"
+#include "encoder/codec/stage_clock.h"
 
 namespace rlpc {
 
@@ -118,6 +119,7 @@ bool SkinnedSpanCoder::needs_frames(double step, double analysis_step) const {
 }
 
 void SkinnedSpanCoder::analyse(double analysis_step) {
+  const Stage stage("skinned GOFs");
   if (!choice_) choose(analysis_step);
   if (!draft_) analysis_for(analysis_step);
 }
@@ -134,6 +136,7 @@ std::optional<double> SkinnedSpanCoder::expected_error(double step) const {
 }
 
 EncodedSpan SkinnedSpanCoder::encode(double step, double analysis_step) {
+  const Stage stage("skinned GOFs");
   if (!choice_) choose(analysis_step);
   if (!follows_step()) analysis_for(analysis_step);
   if (analysis_.last() == nullptr || !is_valid_for(step)) analysis_for(step);

@@ -15,6 +15,7 @@
 #include "encoder/codec/math/small_system.h"
 #include "encoder/codec/rest/rest_coding.h"
 #include "encoder/codec/spans/span_coder.h"
+#include "encoder/codec/stage_clock.h"
 
 namespace rlpc {
 namespace {
@@ -94,6 +95,7 @@ class SkinnedAnalyser {
         before_(before) {}
 
   SkinnedAnalysis analyse() {
+    const Stage stage("quantisation");
     SharedRig& rig = found_.rig;
     rig.weight_bits = rig_.bones.size() > 1 ? settings_.weight_bits : 0;
     rig.prediction = settings_.prediction;
@@ -126,6 +128,7 @@ class SkinnedAnalyser {
       // trajectory. Steps that are tried later may be finer.
       const double finest = step_ / (settings_.draft ? kDraftServes : kAnalysisServes);
       const double min = finest * finest / 12.0 * frames_.num_vertices;
+      const Stage components("components");
       found_.pc = components_by_row(displacement(), settings_.max_trajectories, min);
       found_.step_of_components = step_;
     }

@@ -17,6 +17,7 @@
 #include "encoder/codec/kinds/skinned/recover/chain_fit.h"
 #include "encoder/codec/kinds/skinned/recover/placed_bones.h"
 #include "encoder/codec/kinds/skinned/recover/trajectories.h"
+#include "encoder/codec/stage_clock.h"
 
 namespace rlpc {
 namespace {
@@ -71,6 +72,7 @@ BoneMotions motions_of(const SpanFrames& frames, double extent, const BoneRotati
 
 std::optional<RecoveredRig> recover_rig(const SpanFrames& frames,
                                         std::span<const Triangle> triangles) {
+  const Stage stage("rig recovery");
   // tuned: Frames that bones are looked for in. More tell little, and take time in proportion.
   constexpr std::uint32_t kFrames = 96;
   constexpr std::uint32_t kFew = 16;      // fixed: fewer do not tell rotations apart

@@ -12,6 +12,7 @@
 #include "encoder/codec/math/det_math.h"
 #include "encoder/codec/spans/component_cost.h"
 #include "encoder/codec/spans/lagrangian.h"
+#include "encoder/codec/stage_clock.h"
 
 namespace rlpc {
 namespace {
@@ -108,6 +109,7 @@ double BoneSearch::expected_cost(const Growth& growth, const Growth::Bones& bone
 // Fits bones of each number, ascending, as long as they may be better worth their bits than a
 // single bone, others with the same number, and those before.
 void BoneSearch::grow_all(double step) {
+  const Stage stage("bones");
   // tuned (off: 100): Numbers of bones that are fitted, in ascending order, before expected
   // costs may decide that no bones are used.
   constexpr std::size_t kTelling = 2;
@@ -334,6 +336,7 @@ BestTrial BoneSearch::polish(const SkinnedTrials& trials, const Candidate& chose
 }
 
 SkinnedCandidate BoneSearch::likeliest(double step) {
+  const Stage stage("bones");
   // tuned (off: 1): Bones that are not tried are used if they are expected to cost less than
   // this fraction of a single one, of which the expected cost is too high: it leaves out what
   // adaptive weights predict.
