@@ -441,7 +441,8 @@ TEST(StretchedBones, KeepTheRestShapeWithoutDifferences) {
   Bone bone;
   bone.stretch = Stretch::kRestAxes;
   bone.stretch_residual.resize(2);
-  for (const BonePose& pose : recon_bones(std::vector<Bone>{bone}, 2, 0)[0].poses) {
+  const auto motions = recon_bones(std::vector<Bone>{bone}, 2, 0);
+  for (const BonePose& pose : motions[0].poses) {
     EXPECT_EQ(pose.axes, axes_of(kNoRotation));
   }
 }
