@@ -45,36 +45,41 @@ void for_some_rows(const TrajectoryRows& rows,
   }
 }
 
-// The components of a wide matrix must number at most a quarter of the sampled frames, or the
-// sample is not enough.
-constexpr std::size_t kWideMatrix = 1536;  // fixed: time; 512 frames of three coordinates
-constexpr std::size_t kSampled = 512;  // fixed: time; a sixteenth of the time of the narrowest
-constexpr std::size_t kMaxSamplePart = kSampled / 4;  // fixed: see above
+// Returns the number of columns of a sample that shows the components of a matrix, if they are
+// few; 0: all columns are used.
+std::size_t sampled_columns(const TrajectoryRows& rows) {
+  constexpr std::size_t kWideMatrix = 384;  // fixed: time; narrower ones take little
+  constexpr std::size_t kPart = 4;          // fixed: time; a sixteenth of that of all columns
+  constexpr std::size_t kMaxSample = 512;   // fixed: time
+  const std::size_t count = std::min(rows.num_frames / kPart, kMaxSample);
+  return rows.num_frames > kWideMatrix && rows.num_values > count ? count : 0;
+}
 
 // Returns the components of evenly spaced columns, with a reduced min_energy for safety. None:
 // there are too many.
-std::optional<EigenPairs> components_of_sample(const TrajectoryRows& rows, double min_energy,
-                                               double& total_energy) {
+std::optional<EigenPairs> components_of_sample(const TrajectoryRows& rows, std::size_t sampled,
+                                               double min_energy, double& total_energy) {
   constexpr double kMin = 0.25;  // fixed: energies in the sample differ from those of all
+  const std::size_t max_components = sampled / 4;  // fixed: of more, it would show too little
   const std::size_t width = rows.num_frames;
-  std::vector<double> gram(kSampled * kSampled);
+  std::vector<double> gram(sampled * sampled);
   std::vector<double> sample;
   double sampled_energy = 0.0;
   for_some_rows(rows, [&](std::span<const double> some) {
     for (const double x : some) total_energy += x * x;
     sample.clear();
     for (std::size_t row = 0; row < some.size(); row += width) {
-      for (std::size_t i = 0; i < kSampled; ++i)
-        sample.push_back(some[row + i * width / kSampled]);
+      for (std::size_t i = 0; i < sampled; ++i)
+        sample.push_back(some[row + i * width / sampled]);
     }
     for (const double x : sample) sampled_energy += x * x;
-    add_gram_matrix(sample, kSampled, gram);
+    add_gram_matrix(sample, sampled, gram);
   });
-  const double part = static_cast<double>(kSampled) / static_cast<double>(width);
+  const double part = static_cast<double>(sampled) / static_cast<double>(width);
   EigenPairs pairs =
-      leading_eigenvectors(gram, kSampled, kMaxSamplePart + 1,
+      leading_eigenvectors(gram, sampled, max_components + 1,
                            energy_floor(sampled_energy, kMin * part * min_energy));
-  if (pairs.vectors.size() > kMaxSamplePart) return std::nullopt;
+  if (pairs.vectors.size() > max_components) return std::nullopt;
   return pairs;
 }
 
@@ -100,7 +105,7 @@ std::vector<std::vector<double>> orthonormal(std::vector<std::vector<double>> ve
 }
 
 // Returns orthonormal temporal vectors that follow from the spatial ones of a sample.
-std::vector<std::vector<double>> temporal_basis(const TrajectoryRows& rows,
+std::vector<std::vector<double>> temporal_basis(const TrajectoryRows& rows, std::size_t sampled,
                                                 const EigenPairs& sample_pairs) {
   const std::size_t width = rows.num_frames;
   const std::size_t count = sample_pairs.vectors.size();
@@ -111,8 +116,8 @@ std::vector<std::vector<double>> temporal_basis(const TrajectoryRows& rows,
     for (std::size_t row = 0; row < together; ++row) {
       for (std::size_t k = 0; k < count; ++k) {
         double sum = 0.0;
-        for (std::size_t i = 0; i < kSampled; ++i) {
-          sum += some[row * width + i * width / kSampled] * sample_pairs.vectors[k][i];
+        for (std::size_t i = 0; i < sampled; ++i) {
+          sum += some[row * width + i * width / sampled] * sample_pairs.vectors[k][i];
         }
         spatial[k * together + row] = sum;
       }
@@ -130,12 +135,14 @@ std::vector<std::vector<double>> temporal_basis(const TrajectoryRows& rows,
 // Returns the principal components within the subspace of a sample of the columns. None: a
 // sample is not enough.
 std::optional<ComponentsByRow> components_in_subspace(const TrajectoryRows& rows,
+                                                      std::size_t sampled,
                                                       std::size_t max_components,
                                                       double min_energy) {
   ComponentsByRow result;
-  const auto sample_pairs = components_of_sample(rows, min_energy, result.total_energy);
+  const auto sample_pairs =
+      components_of_sample(rows, sampled, min_energy, result.total_energy);
   if (!sample_pairs) return std::nullopt;
-  const std::vector<std::vector<double>> basis = temporal_basis(rows, *sample_pairs);
+  const std::vector<std::vector<double>> basis = temporal_basis(rows, sampled, *sample_pairs);
   const std::size_t width = rows.num_frames;
   const std::size_t count = basis.size();
   if (count == 0) return result;
@@ -200,8 +207,9 @@ ComponentsByRow components_by_row(const TrajectoryRows& rows, std::size_t max_co
   ComponentsByRow result;
   const std::size_t width = rows.num_frames;
   if (width == 0) return result;
-  if (width > kWideMatrix && rows.num_values > kSampled) {
-    if (auto found = components_in_subspace(rows, max_components, min_energy)) return *found;
+  if (const std::size_t sampled = sampled_columns(rows); sampled > 0) {
+    auto found = components_in_subspace(rows, sampled, max_components, min_energy);
+    if (found) return *found;
     // Rows are read again.
   }
   if (width > rows.num_values) {

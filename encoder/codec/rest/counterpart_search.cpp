@@ -21,9 +21,13 @@ constexpr std::size_t kFollowed = 32;
 // fixed: Bad predictions after which it is not followed any further, which bounds the work at
 // vertices of many triangles.
 constexpr int kMaxBad = 6;
-// tuned: Predictions of the search for each vertex, on average. Smooth grids, where all shapes
-// are alike, would take hundreds.
-constexpr std::int64_t kPredictions = 64;
+// tuned: Predictions of the search for each vertex, on average, where all vertices have
+// counterparts. Smooth grids, where all shapes are alike, would take hundreds.
+constexpr double kPredictions = 64.0;
+// tuned (off: 64): The same where no vertices have counterparts.
+constexpr double kFewestPredictions = 4.0;
+// tuned: Vertices over which the part that has counterparts is averaged.
+constexpr double kAveraged = 1000.0;
 
 ListOfLists<std::uint32_t> find_dependents(const RestOrder& order) {
   std::vector<std::uint32_t> first(std::size_t{order.num_vertices()} + 1, 0);
@@ -154,7 +158,8 @@ double CounterpartSearch::growth(std::uint32_t v, const HingePairs& pairs,
 std::optional<CounterpartSearch::Found> CounterpartSearch::find(
     std::uint32_t v, const Counterparts& counterparts) {
   std::optional<Found> best;
-  allowance_ += kPredictions;
+  allowance_ +=
+      round_to_int(kFewestPredictions + used_part_ * (kPredictions - kFewestPredictions));
   if (allowance_ <= 0) return best;
   const auto hinges = order_.hinges(v);
   const auto try_entry = [&](std::size_t k, const Entry& entry, bool mirrored) {
@@ -189,7 +194,8 @@ std::optional<CounterpartSearch::Found> CounterpartSearch::find(
   return best;
 }
 
-void CounterpartSearch::add(std::uint32_t v) {
+void CounterpartSearch::add(std::uint32_t v, bool used) {
+  used_part_ += ((used ? 1.0 : 0.0) - used_part_) / kAveraged;
   const auto hinges = order_.hinges(v);
   for (std::size_t k = 0; k < hinges.size(); ++k) {
     std::vector<Entry>& entries = cells_[key_of(cell_of(v, hinges[k]))];

@@ -27,11 +27,12 @@ class CounterpartSearch {
     Counterpart choice;
     double gain = 0.0;  // estimate of the bits that it saves at later vertices
   };
-  // Returns the best new counterpart of v, if there is one. Takes a bounded time on average:
-  // after a long search, none is found for some vertices.
+  // Returns the best new counterpart of v, if there is one. Takes a bounded time on average,
+  // and less where few vertices have counterparts: after a long search, none is found for some
+  // vertices.
   std::optional<Found> find(std::uint32_t v, const Counterparts& counterparts);
-  // Adds v, once it has been coded, after the search at v.
-  void add(std::uint32_t v);
+  // Adds v, once it has been coded, after the search at v. used: it has a counterpart
+  void add(std::uint32_t v, bool used);
 
  private:
   struct Entry {
@@ -60,6 +61,7 @@ class CounterpartSearch {
   std::unordered_map<std::uint64_t, std::vector<Entry>> cells_;
   std::uint32_t num_listed_ = 0;
   std::int64_t allowance_ = 0;  // number of predictions that may be made; may fall below 0
+  double used_part_ = 1.0;      // part of the last vertices that have counterparts
   // Work space of growth(); kNone between calls.
   std::vector<std::uint32_t> assumed_;  // [num_vertices]
   std::vector<std::uint8_t> seen_;      // [num_vertices]

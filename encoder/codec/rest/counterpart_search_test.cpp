@@ -37,9 +37,8 @@ struct Sheet {
   }
 };
 
-// Without a bound, 97 % of the vertices find candidates, hundreds each, and follow them.
-TEST(CounterpartSearch, RestsAfterLongSearches) {
-  const Sheet sheet;
+// Returns the number of vertices of a sheet that find a counterpart.
+std::uint32_t num_found(const Sheet& sheet, bool used) {
   const Topology topology = make_topology(Sheet::kSide * Sheet::kSide, sheet.triangles);
   const OrderedMeshes meshes(topology, sheet.triangles);
   const RestOrder& order = meshes[Prediction::kLayers].rest_order();
@@ -50,10 +49,23 @@ TEST(CounterpartSearch, RestsAfterLongSearches) {
     counterparts.start(v);
     if (search.find(v, counterparts)) ++found;
     counterparts.finish(false);
-    search.add(v);
+    search.add(v, used);
   }
+  return found;
+}
+
+// Without a bound, 97 % of the vertices find candidates, hundreds each, and follow them.
+TEST(CounterpartSearch, RestsAfterLongSearches) {
+  const std::uint32_t found = num_found(Sheet(), true);
   EXPECT_GT(found, 0U);
   EXPECT_LT(found, Sheet::kSide * Sheet::kSide / 2);
+}
+
+TEST(CounterpartSearch, RestsLongerWhereFewAreUsed) {
+  const Sheet sheet;
+  const std::uint32_t found = num_found(sheet, false);
+  EXPECT_GT(found, 0U);
+  EXPECT_LT(found, 0.8 * num_found(sheet, true));
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ class RestCoder {
       for (std::size_t c = 0; c < kRestFactors; ++c) {
         coded_.residual[v * kRestFactors + c] = residual[c];
       }
-      if (search_) search_->add(v);
+      if (search_) search_->add(v, used);
     }
     coded_.values = std::move(recon_.values());
     coded_.bits = section_.bits() + kSettingsBits;

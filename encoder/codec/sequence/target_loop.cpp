@@ -66,6 +66,7 @@ InputResult<TargetSearch> begin_search(const TargetTask& task, SpanBatch& batch,
                                        std::uint32_t trials) {
   TargetSearch search = search_for(task.settings, task.header, task.rms_spread);
   if (task.settings.profile == Profile::kHigh) search.set_costly();
+  if (task.settings.preset == Preset::kFast) search.set_quick();
   if (task.first_step > 0.0) {
     search.begin_at(task.first_step);
   } else if (task.settings.target.kind == Target::kKg) {

@@ -27,7 +27,7 @@ class ClusterSpanCoder : public SpanCoder {
     const Stage stage("cluster GOFs");
     if (!uses_sample()) return step;
     const ClusterSample sample(coding_.mesh(), coding_.settings(), coding_.frames());
-    const ClusterSample::Estimate estimate = sample.cheapest(step);
+    const ClusterSample::Estimate estimate = sample.cheapest(step, rival);
     choice_ = estimate.choice;
     if (ratio_at_equal_error(estimate.cost, rival) > kMargin) return std::nullopt;
     return step;

@@ -27,8 +27,9 @@ class ClusterSample {
     ClusterChoice choice;  // of the whole mesh: clusters as large as the best of the sample
     SpanCost cost;         // of the whole mesh
   };
-  // Returns the cheapest of several choices. step: as in SpanCoder::encode().
-  Estimate cheapest(double step) const;
+  // Returns the cheapest of several choices; of fewer, if they cost far more than the rival.
+  // step: as in SpanCoder::encode().
+  Estimate cheapest(double step, const SpanCost& rival) const;
 
  private:
   const std::uint32_t num_vertices_;  // of the whole mesh

@@ -10,18 +10,19 @@ namespace {
 
 constexpr int kMaxTrials = 18;  // fixed: a search ends
 // Parts of the target that an encoding may be below it to end the search; promises to users.
-// The largest error jumps with the step, so that more encodings would rarely come closer.
-constexpr double kTolerance = 0.006;          // fixed: 0.3 % of the bytes
-constexpr double kToleranceOfLargest = 0.02;  // fixed: time
-constexpr double kFinestStep = 0.5;           // fixed: grid steps
-constexpr double kCoarsestStep = 0x1p24;      // fixed: grid steps
-constexpr double kFarthest = 50.0;            // fixed: factor from one step to the next
+constexpr double kTolerance = 0.006;  // fixed: 0.3 % of the bytes
+// The same of the largest error, which jumps with the step, so that more encodings would rarely
+// come closer; and of the KG error, where time is worth more.
+constexpr double kWideTolerance = 0.02;   // fixed: time
+constexpr double kFinestStep = 0.5;       // fixed: grid steps
+constexpr double kCoarsestStep = 0x1p24;  // fixed: grid steps
+constexpr double kFarthest = 50.0;        // fixed: factor from one step to the next
 // Exponents are clamped to this factor above and below the usual one.
 constexpr double kSteepest = 2.0;  // fixed: a guard against wrong expectations
 // The maximum error is a discontinuous function of the step. At a jump, narrowing the bracket
 // is useless. Instead, coarser steps beyond the bracket are sampled: one of them may happen to
 // meet the target.
-constexpr double kNarrow = 1.0 + kToleranceOfLargest / 4.0;  // fixed: by the tolerance
+constexpr double kNarrow = 1.0 + kWideTolerance / 4.0;  // fixed: by the tolerance
 // tuned (off: 0): Number of coarser steps that are tried where the largest error jumps, with
 // --max-error. Each is one more encoding, and may be smaller by chance.
 constexpr int kSamples = 8;
@@ -116,7 +117,9 @@ bool TargetSearch::is_here(double measured) const {
 }
 
 double TargetSearch::tolerance() const {
-  return target_.kind == Target::kMaxError ? kToleranceOfLargest : kTolerance;
+  const bool is_wide =
+      target_.kind == Target::kMaxError || (is_quick_ && target_.kind == Target::kKg);
+  return is_wide ? kWideTolerance : kTolerance;
 }
 
 double TargetSearch::aim() const { return target_.value * (1.0 - 0.5 * tolerance()); }

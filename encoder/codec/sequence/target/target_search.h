@@ -41,6 +41,8 @@ class TargetSearch {
   // Declares encodings slow: a KG error of up to 2 % below the target ends the search after
   // five.
   void set_costly() { is_costly_ = true; }
+  // Declares time worth more than bytes: such a KG error ends the search at once.
+  void set_quick() { is_quick_ = true; }
   double step() const { return step_; }
   // Returns the step to analyse for. Near the target it is kept as long as it is valid for
   // step(), because the measured value jumps from one analysis to the next.
@@ -84,6 +86,7 @@ class TargetSearch {
   double last_measured_ = -1.0;  // below 0: none yet
   int num_equal_ = 0;            // number of earlier encodings with this value
   bool is_costly_ = false;
+  bool is_quick_ = false;
   int trials_ = 0;
   bool was_interpolated_ = false;  // step_ was interpolated in a narrow bracket
   double sampled_from_ = 0.0;      // start of the samples beyond a jump; 0: not sampling

@@ -265,6 +265,28 @@ TEST(TargetSearch, EndsAfterFiveEncodingsIfTheyAreCostly) {
   }
 }
 
+TEST(TargetSearch, EndsNearTheTargetIfItIsQuick) {
+  int sum = 0;
+  int sum_of_quick = 0;
+  for (const double power : {0.3, 0.5, 0.8, 1.0, 1.3}) {
+    for (const bool quick : {false, true}) {
+      SCOPED_TRACE(testing::Message() << power << " " << quick);
+      TargetSearch s({Target::kKg, 0.1}, 10000.0, 1000.0, kStepOfError, kRange);
+      if (quick) s.set_quick();
+      s.begin_at(100.0);
+      double best = 0.0;
+      for (int i = 0; !s.finished() && i < kEnough; ++i) {
+        const double measured = 0.1 * std::pow(s.step() / 110.0, power);
+        if (s.report(measured, bytes_with(s.step()))) best = measured;
+        ++(quick ? sum_of_quick : sum);
+      }
+      EXPECT_LE(best, 0.1);
+      EXPECT_GE(best, quick ? 0.098 : 0.0994);
+    }
+  }
+  EXPECT_LT(sum_of_quick, sum);
+}
+
 TEST(TargetSearch, EndsWithTheSmallestErrorIfTheTargetIsUnreachable) {
   for (const double floor : {0.11, 3.0}) {
     const Outcome outcome =
