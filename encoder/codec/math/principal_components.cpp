@@ -104,6 +104,15 @@ std::vector<std::vector<double>> orthonormal(std::vector<std::vector<double>> ve
   return basis;
 }
 
+std::vector<std::vector<double>> rows_of(const std::vector<double>& matrix, std::size_t width) {
+  std::vector<std::vector<double>> rows;
+  for (std::size_t first = 0; first < matrix.size(); first += width) {
+    const auto from = matrix.begin() + static_cast<std::ptrdiff_t>(first);
+    rows.emplace_back(from, from + static_cast<std::ptrdiff_t>(width));
+  }
+  return rows;
+}
+
 // Returns orthonormal temporal vectors that follow from the spatial ones of a sample.
 std::vector<std::vector<double>> temporal_basis(const TrajectoryRows& rows, std::size_t sampled,
                                                 const EigenPairs& sample_pairs) {
@@ -124,12 +133,29 @@ std::vector<std::vector<double>> temporal_basis(const TrajectoryRows& rows, std:
     }
     add_matrix_product(spatial, together, some, width, sums);
   });
-  std::vector<std::vector<double>> vectors;
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto from = sums.begin() + static_cast<std::ptrdiff_t>(k * width);
-    vectors.emplace_back(from, from + static_cast<std::ptrdiff_t>(width));
-  }
-  return orthonormal(std::move(vectors));
+  return orthonormal(rows_of(sums, width));
+}
+
+// Returns the basis after one more step of subspace iteration: motion that the sampled frames
+// hardly show comes in.
+std::vector<std::vector<double>> improved_basis(const TrajectoryRows& rows,
+                                                const std::vector<std::vector<double>>& basis) {
+  const std::size_t width = rows.num_frames;
+  const std::size_t count = basis.size();
+  const std::vector<double> columns = as_columns(basis, width);
+  std::vector<double> sums(count * width);  // [count][width]
+  for_some_rows(rows, [&](std::span<const double> some) {
+    const std::size_t together = some.size() / width;
+    const std::vector<double> products = matrix_product(some, width, columns, count);
+    std::vector<double> spatial(count * together);  // [count][row]
+    for (std::size_t row = 0; row < together; ++row) {
+      for (std::size_t k = 0; k < count; ++k) {
+        spatial[k * together + row] = products[row * count + k];
+      }
+    }
+    add_matrix_product(spatial, together, some, width, sums);
+  });
+  return orthonormal(rows_of(sums, width));
 }
 
 // Returns the principal components within the subspace of a sample of the columns. None: a
@@ -142,7 +168,8 @@ std::optional<ComponentsByRow> components_in_subspace(const TrajectoryRows& rows
   const auto sample_pairs =
       components_of_sample(rows, sampled, min_energy, result.total_energy);
   if (!sample_pairs) return std::nullopt;
-  const std::vector<std::vector<double>> basis = temporal_basis(rows, sampled, *sample_pairs);
+  const std::vector<std::vector<double>> basis =
+      improved_basis(rows, temporal_basis(rows, sampled, *sample_pairs));
   const std::size_t width = rows.num_frames;
   const std::size_t count = basis.size();
   if (count == 0) return result;
