@@ -168,9 +168,10 @@ std::optional<ComponentsByRow> components_in_subspace(const TrajectoryRows& rows
   const auto sample_pairs =
       components_of_sample(rows, sampled, min_energy, result.total_energy);
   if (!sample_pairs) return std::nullopt;
-  const std::vector<std::vector<double>> basis =
-      improved_basis(rows, temporal_basis(rows, sampled, *sample_pairs));
+  constexpr std::size_t kImproved = 1536;  // fixed: time; wider ones have longer samples
   const std::size_t width = rows.num_frames;
+  std::vector<std::vector<double>> basis = temporal_basis(rows, sampled, *sample_pairs);
+  if (width <= kImproved) basis = improved_basis(rows, basis);
   const std::size_t count = basis.size();
   if (count == 0) return result;
   const std::vector<double> columns = as_columns(basis, width);

@@ -37,7 +37,7 @@ PrincipalComponents principal_components(const TrajectoryMatrix& matrix,
 struct TrajectoryRows {
   std::size_t num_values = 0;
   std::size_t num_frames = 0;
-  // Fills `rows` with consecutive rows, starting with row `first`; called two or three times
+  // Fills `rows` with consecutive rows, starting with row `first`; called two to five times
   // for each row.
   std::function<void(std::size_t first, std::span<double> rows)> write;
 };

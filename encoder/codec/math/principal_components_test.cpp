@@ -255,7 +255,7 @@ class WideMatrix : public testing::TestWithParam<std::size_t> {};
 // columns, whether they have more rows or more columns.
 TEST_P(WideMatrix, HasComponentsWithItsEnergy) {
   const std::size_t num_values = GetParam();
-  constexpr std::size_t kColumns = 1560;
+  constexpr std::size_t kColumns = 1560;  // the subspace is not improved
   constexpr std::size_t kRank = 6;
   const TrajectoryMatrix m = random_matrix(11, num_values, kColumns, kRank);
   int reads = 0;
@@ -267,7 +267,7 @@ TEST_P(WideMatrix, HasComponentsWithItsEnergy) {
                               }
                             }};
   const ComponentsByRow found = components_by_row(rows, 100, 1e-3);
-  EXPECT_EQ(reads, 4) << "not by a sample";
+  EXPECT_EQ(reads, 3) << "not by a sample";
   ASSERT_EQ(found.temporal.size(), kRank);
   ASSERT_EQ(found.spatial.size(), num_values * kRank);
   const PrincipalComponents exact = principal_components(m, 100, 1e-3);
