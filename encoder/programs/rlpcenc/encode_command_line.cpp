@@ -264,8 +264,7 @@ OutputOptions add_output_options(CLI::App& app, EncodeCommandLine& line) {
       app.add_flag("--keep-order", o.settings.keep_order, "Store the vertex order of INPUT")
           ->group(kOutput);
   app.add_flag("--json", o.json, "Report as JSON on standard output")->group(kOutput);
-  app.add_flag("-v,--verbose", o.verbose,
-               "Also report the encoder's choices, and how long its stages took")
+  app.add_flag("-v,--verbose", o.verbose, "Also report choices, and times of stages")
       ->group(kOutput);
   app.add_flag("-q,--quiet", o.quiet, "No report, no progress")->group(kOutput);
   return {dry_run, keep_order};
