@@ -169,7 +169,7 @@ class SkinChoice(SkinTest):
                 self.path("a.rlpc"), "--kg", 0.1, "--preset", "fast", "--gof", 128, "--gof-kind",
                 "skinned")
         # A small error does not outweigh 50 times the bytes; a large one does.
-        self.assertEqual(self.targets(self.path("a.rlpc"), "--max-targets", 8), (True, 8))
+        self.assertEqual(self.targets(self.path("a.rlpc"), "--max-targets", 12), (True, 12))
         self.assertEqual(self.targets(self.path("a.rlpc"), "--max-targets", 1), (False, 599))
 
     def test_frames_predicted_from_frames_have_no_bones(self):
