@@ -1,11 +1,11 @@
 #include "decoder/meshes/obj_materials.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "common/codec/mesh/indices.h"
 #include "decoder/meshes/mesh_bytes.h"
 
 namespace rlpc {
@@ -147,8 +147,7 @@ ObjMaterials::ObjMaterials(const SinkOptions& options) : asset_(options.asset) {
   }
   const auto& values = attributes.material->values;
   used_.assign(values.begin(), values.end());
-  std::sort(used_.begin(), used_.end());
-  used_.erase(std::unique(used_.begin(), used_.end()), used_.end());
+  sort_without_repetitions(used_);
 }
 
 std::string ObjMaterials::material_name(std::uint32_t number) const {

@@ -95,12 +95,6 @@ ListOfLists<Parallelogram> find_parallelograms(std::uint32_t num_vertices,
 
 }  // namespace
 
-void sort_without_repetitions(Vector<std::uint32_t>& indices) {
-  const std::span all(indices);  // sorted as other spans: code that they share
-  std::sort(all.begin(), all.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-}
-
 Topology make_topology(std::uint32_t num_vertices, std::span<const Triangle> triangles) {
   return {find_earlier_neighbours(num_vertices, triangles),
           find_parallelograms(num_vertices, triangles)};

@@ -41,9 +41,6 @@ struct Topology {
   ListOfLists<Parallelogram> parallelograms;
 };
 
-// Sorts indices, and removes repetitions.
-void sort_without_repetitions(Vector<std::uint32_t>& indices);
-
 // Makes the topology. triangles: indices below num_vertices.
 Topology make_topology(std::uint32_t num_vertices, std::span<const Triangle> triangles);
 

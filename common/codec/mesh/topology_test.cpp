@@ -51,15 +51,6 @@ TEST(Topology, NeighboursAreEarlierAscendingAndUnique) {
   EXPECT_EQ(neighbours(topology, 5), (Indices{0, 1, 3, 4}));
 }
 
-TEST(Topology, IndicesAreSortedWithoutRepetitions) {
-  Indices indices{5, 3, 5, 9, 0, 3};
-  sort_without_repetitions(indices);
-  EXPECT_EQ(indices, (Indices{0, 3, 5, 9}));
-  indices.clear();
-  sort_without_repetitions(indices);
-  EXPECT_TRUE(indices.empty());
-}
-
 TEST(Topology, DegenerateTrianglesMakeNeighboursButNoParallelograms) {
   const Topology topology =
       make_topology(4, Triangles{{1, 2, 1}, {0, 1, 2}, {3, 3, 3}, {2, 1, 3}});

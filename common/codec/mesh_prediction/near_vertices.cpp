@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "common/codec/mesh/topology.h"
+#include "common/codec/mesh/indices.h"
 #include "common/memory/owned.h"
 #include "common/parallel/for_each.h"
 

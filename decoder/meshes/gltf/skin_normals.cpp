@@ -11,6 +11,7 @@
 #include <numeric>
 #include <utility>
 
+#include "common/codec/mesh/indices.h"
 #include "common/parallel/for_each.h"
 
 namespace rlpc {
@@ -273,8 +274,7 @@ class SkinNormalMaker {
     wanted_.resize(vertex_.size());
     apart_.resize(vertex_.size());
     std::vector<std::uint32_t> frames = best_;
-    std::ranges::sort(frames);
-    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    sort_without_repetitions(frames);
     for (const std::uint32_t f : frames) {
       const JointFrame joints(influences_, maps_[f]);
       const std::vector<float> whole = look_.normals(frames_[f]);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/codec/mesh/corners.h"
+#include "common/codec/mesh/indices.h"
 #include "encoder/codec/math/det_math.h"
 
 namespace rlpc {
@@ -155,8 +156,7 @@ class SmoothingSearch {
         sectors.push_back(mesh_.sectors.sector_of_corner[k]);
       }
     }
-    std::sort(sectors.begin(), sectors.end());
-    sectors.erase(std::unique(sectors.begin(), sectors.end()), sectors.end());
+    sort_without_repetitions(sectors);
     double before = flag ? kFlagBits : 0.0;
     for (const std::uint32_t x : sectors) before += costs[x];
     if (before < 1.0 || !faces.turn(c)) return false;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "common/codec/mesh/topology.h"
+#include "common/codec/mesh/indices.h"
 #include "common/memory/owned.h"
 
 namespace rlpc {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/codec/mesh/indices.h"
+
 namespace rlpc {
 
 VertexRings vertex_rings(std::size_t num_vertices, std::span<const Triangle> triangles) {
@@ -12,10 +14,7 @@ VertexRings vertex_rings(std::size_t num_vertices, std::span<const Triangle> tri
       rings[t[k]].push_back(t[(k + 2) % 3]);
     }
   }
-  for (auto& ring : rings) {
-    std::sort(ring.begin(), ring.end());
-    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-  }
+  for (auto& ring : rings) sort_without_repetitions(ring);
   return rings;
 }
 

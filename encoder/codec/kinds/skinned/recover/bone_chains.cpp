@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "common/codec/mesh/indices.h"
 #include "common/parallel/for_each.h"
 #include "encoder/codec/kinds/skinned/recover/trajectory_span.h"
 #include "encoder/codec/math/det_math.h"
@@ -182,8 +183,7 @@ class Connection {
       for (const std::uint32_t u : rings_[v]) {
         list.insert(list.end(), bones[u].begin(), bones[u].end());
       }
-      std::sort(list.begin(), list.end());
-      list.erase(std::unique(list.begin(), list.end()), list.end());
+      sort_without_repetitions(list);
     }
     return result;
   }
