@@ -2,15 +2,12 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "encoder/codec/kinds/inter/frame_pattern_text.h"
 #include "encoder/codec/metrics/metrics.h"
 #include "encoder/codec/metrics/surface_metrics.h"
 #include "encoder/codec/sequence/target/quality.h"
-#include "encoder/codec/stage_clock.h"
 #include "encoder/rlpc_encoder.h"
 
 namespace rlpc {
@@ -114,12 +111,6 @@ inline nlohmann::ordered_json report_json(const EncodeReport& r) {
                                      {"bytes", cut.bytes},
                                      {"kg_error_percent", cut.kg_error_percent}});
   }
-  return json;
-}
-
-inline nlohmann::ordered_json stages_json(const std::vector<StageTime>& stages) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (const StageTime& time : stages) json[std::string(time.stage)] = time.seconds;
   return json;
 }
 
