@@ -166,10 +166,10 @@ class SkinChoice(SkinTest):
     def test_auto_weighs_the_error_against_the_bytes(self):
         self.ok("make_tentacle", 400, 600, self.path("t"))
         self.ok("rlpcenc", self.path("t.obj"), "--points", self.path("t.pc2"), "-o",
-                self.path("a.rlpc"), "--kg", 0.1, "--preset", "fast", "--gof", 128, "--gof-kind",
+                self.path("a.rlpc"), "--kg", 0.2, "--preset", "fast", "--gof", 128, "--gof-kind",
                 "skinned")
         # A small error does not outweigh 50 times the bytes; a large one does.
-        self.assertEqual(self.targets(self.path("a.rlpc"), "--max-targets", 12), (True, 12))
+        self.assertEqual(self.targets(self.path("a.rlpc"), "--max-targets", 8), (True, 8))
         self.assertEqual(self.targets(self.path("a.rlpc"), "--max-targets", 1), (False, 599))
 
     def test_frames_predicted_from_frames_have_no_bones(self):
