@@ -126,8 +126,8 @@ typedef struct rlpc_encode_options {
   size_t struct_size;  // rlpc_encode_options_init sets it
   uint32_t profile;    // default RLPC_PROFILE_MAIN
   uint32_t preset;     // default RLPC_PRESET_MEDIUM
-  // rlpc_target, default RLPC_TARGET_KG; approached from below, to 0.6 % (largest error: 2 %)
-  // if possible.
+  // rlpc_target, default RLPC_TARGET_KG; approached from below, to 0.6 % (largest error,
+  // and KG error with RLPC_PRESET_FAST: 2 %) if possible.
   uint32_t target;
   double target_value;  // default 0.1; above zero and finite
   // Maximum frames per GOF; 0: 128, or 256 in the High profile; UINT32_MAX: one GOF of all.

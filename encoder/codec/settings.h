@@ -125,8 +125,8 @@ struct InterTools {
 enum class HashMode : std::uint8_t { kNone, kGof, kFrame };
 
 // Error or rate that the encoder aims for. If possible, the result is at most 0.6 % below it,
-// or 2 % if it is the largest error. It exceeds the target only if that cannot be met
-// (EncodeReport::target_met).
+// or 2 % if it is the largest error, or the KG error with preset fast. It exceeds the target
+// only if that cannot be met (EncodeReport::target_met).
 struct Target {
   enum Kind : std::uint8_t {
     kNone,  // no search; quantisers as set

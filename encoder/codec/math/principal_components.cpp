@@ -168,7 +168,9 @@ std::optional<ComponentsByRow> components_in_subspace(const TrajectoryRows& rows
   const auto sample_pairs =
       components_of_sample(rows, sampled, min_energy, result.total_energy);
   if (!sample_pairs) return std::nullopt;
-  constexpr std::size_t kImproved = 1536;  // fixed: time; wider ones have longer samples
+  // fixed: Time. On a knight of 8454 columns, the further step takes a third of this function
+  // and saves no bytes.
+  constexpr std::size_t kImproved = 1536;
   const std::size_t width = rows.num_frames;
   std::vector<std::vector<double>> basis = temporal_basis(rows, sampled, *sample_pairs);
   if (width <= kImproved) basis = improved_basis(rows, basis);

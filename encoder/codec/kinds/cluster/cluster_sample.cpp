@@ -41,7 +41,8 @@ ClusterSample::ClusterSample(const SequenceMesh& mesh, const EncoderSettings& se
 
 ClusterSample::Estimate ClusterSample::cheapest(double step, const SpanCost& rival) const {
   // tuned (off: 100): Other numbers of clusters are not tried where the first costs more than
-  // the rival by this factor. They cost up to 1.75 times less than the first.
+  // the rival by this factor. Of nine sequences at two errors, none costs less than the first
+  // by more than a factor of 1.75.
   constexpr double kHopeless = 2.5;
   const auto maker = coding_.cluster_maker();
   const std::size_t last = last_cluster_count(frames_.num_vertices, kSampleCounts);

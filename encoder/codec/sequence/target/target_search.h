@@ -41,7 +41,8 @@ class TargetSearch {
   // Declares encodings slow: a KG error of up to 2 % below the target ends the search after
   // five.
   void set_costly() { is_costly_ = true; }
-  // Declares time worth more than bytes: such a KG error ends the search at once.
+  // Declares time worth more than bytes: a KG error of up to 2 % below the target ends the
+  // search.
   void set_quick() { is_quick_ = true; }
   double step() const { return step_; }
   // Returns the step to analyse for. Near the target it is kept as long as it is valid for
