@@ -162,7 +162,6 @@ std::optional<InputError> LowDelayEncoder::code_first(std::span<const float> xyz
 
 std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz,
                                                       std::span<const double> exact) {
-  const Stage stage("inter GOFs");
   SpanBuffer buffer(format_.num_vertices, 1);
   buffer.add(xyz, exact);
   const auto frame = coding_->read_frames(buffer, {0, 1, 1});
@@ -187,7 +186,6 @@ std::optional<InputError> LowDelayEncoder::code_frame(std::span<const float> xyz
   };
   const auto measured = coding_->measure({buffer, reading}, {0, 1, 1}, decode, metrics_);
   if (!measured) return measured.error();
-  const Stage verification("verification");
   StreamVerifier& verifier =
       out_.verifier(coding_->header(), coding_->connectivity(), num_threads_);
   std::vector<double> original(xyz.size());
@@ -220,6 +218,7 @@ void LowDelayEncoder::end_gof() {
 
 // Verifies frames: those of an open-ended stream one by one, others when their GOF is complete.
 std::optional<InputError> LowDelayEncoder::verify() {
+  const Stage stage("verification");
   if (gof_ && !coding_->header().open_end_flag) return std::nullopt;
   return out_.verifier(coding_->header(), coding_->connectivity(), num_threads_)
       .check_expected();
@@ -228,6 +227,7 @@ std::optional<InputError> LowDelayEncoder::verify() {
 std::optional<InputError> LowDelayEncoder::add_frame(std::span<const float> xyz,
                                                      std::span<const double> exact) {
   if (failure_) return failure_;
+  const Stage stage("inter GOFs");
   if (auto error = check_frame(format_, num_added_, xyz, exact)) return error;
   const Threads threads(num_threads_);
   if (!stream_) {
